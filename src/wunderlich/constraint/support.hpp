@@ -1,0 +1,71 @@
+/// What the surroundings prescribe: pins, clamps, orientation constraints, and loads, in time.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "wunderlich/base/types.hpp"
+
+namespace wunderlich::constraint {
+
+/// One key of a prescribed motion. `turn` is a further rotation about d3 that may exceed a full turn,
+/// which a frame alone cannot say.
+struct PoseKey {
+  double time = 0;                   ///< [s]; the load parameter of an equilibrium path
+  Pose pose;
+  double turn = 0;                   ///< about d3, right-handed [rad]
+};
+
+/// Keys in increasing time; constant before the first and after the last, in between positions and turns
+/// linearly, frames along the shorter rotation.
+struct Motion {
+  std::vector<PoseKey> keys;
+};
+
+Pose pose_at(const Motion& motion, double time);
+double end_time(const Motion& motion);
+
+/// Which rotations a support holds.
+enum class Orientation {
+  free,           ///< a pin
+  about_tangent,  ///< the paper's orientation constraint: rotation about the centerline only   @eq Shen2015:18
+  full,           ///< a clamp
+};
+
+/// A support at a node or a segment. At an end node of an open strip with `full` orientation the node's own
+/// frame is held (half-cell hinge); anywhere else the frame is that of the segment and the position that of
+/// its first node.
+struct Support {
+  int node = 0;                                   ///< node whose position is held; for a segment its first node
+  int segment = -1;                               ///< segment whose frame is held, -1: the end node's own frame
+  std::array<bool, 3> hold_position{true, true, true};   ///< world x, y, z
+  Orientation orientation = Orientation::full;
+  Motion motion;
+};
+
+/// Whether a load keeps its direction in space or turns with the material frame it acts on.
+enum class LoadFrame { space, material };
+
+struct LoadKey {
+  double time = 0;
+  Vec3 force = Vec3::Zero();         ///< [N]
+  Vec3 torque = Vec3::Zero();        ///< [N m]
+};
+
+/// A force and torque at a node, linear in time between keys.
+struct Load {
+  int node = 0;
+  LoadFrame frame = LoadFrame::space;
+  std::vector<LoadKey> keys;
+};
+
+LoadKey load_at(const Load& load, double time);
+
+/// Everything imposed from outside.
+struct Surroundings {
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  Vec3 gravity = Vec3::Zero();       ///< [m/s^2]
+};
+
+}  // namespace wunderlich::constraint

@@ -1,0 +1,51 @@
+/// Runs a scene: the one call behind the command line and the bindings.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "wunderlich/base/frame.hpp"
+#include "wunderlich/base/summary.hpp"
+#include "wunderlich/geometry/state.hpp"
+#include "wunderlich/scene/scene.hpp"
+
+namespace wunderlich::scene {
+
+/// One recorded instant as states, enough to rebuild its Frame.
+struct Record {
+  geometry::State state;
+  HistoryRow history;
+};
+
+enum class Outcome { converged, not_converged, interrupted };
+
+/// Everything a checkpoint stores. `cursor` is the solver's own state, opaque to others.
+struct Progress {
+  std::vector<Record> records;
+  std::vector<double> cursor;
+};
+
+struct RunResult {
+  Outcome outcome = Outcome::not_converged;
+  Summary summary;
+  Progress progress;
+};
+
+/// Called after each step; returns false to stop (Ctrl-C).
+struct RunStatus {
+  std::string phase;               ///< "bend", "twist", "close", "load", "settle"
+  double fraction = 0;             ///< of the path, in [0, 1]
+  int iterations = 0;              ///< Newton iterations so far
+};
+using Observer = std::function<bool(const RunStatus&)>;
+
+/// Runs from the start, or goes on from `resume`. Does no I/O. Deterministic: a resumed run ends bit for bit
+/// as an uninterrupted one.
+RunResult run(const Scene& scene, const Observer& observer, const Progress* resume = nullptr);
+
+/// The exporter's view of a record.
+Frame frame_of(const Scene& scene, const geometry::State& state);
+FlatPattern pattern_of(const Scene& scene, const geometry::State& state);
+
+}  // namespace wunderlich::scene
