@@ -1,14 +1,30 @@
 # Compiler settings shared by every target of the project.
 add_library(wunderlich_options INTERFACE)
 target_compile_features(wunderlich_options INTERFACE cxx_std_20)
+
+# Release keeps our own asserts (no NDEBUG: they cost nothing measurable and a wrong result costs more);
+# Eigen's index checks in the inner loops are left to the other build types.
+set(CMAKE_CXX_FLAGS_RELEASE "-O3")
+target_compile_definitions(wunderlich_options INTERFACE $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
+
 # The two flags let the compiler keep sqrt and log inline; results do not change. Never -ffast-math.
 target_compile_options(wunderlich_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno -fno-trapping-math)
 if(WUNDERLICH_WARNINGS_AS_ERRORS)
   target_compile_options(wunderlich_options INTERFACE -Werror)
 endif()
+
 if(WUNDERLICH_SANITIZE)
-  target_compile_options(wunderlich_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(wunderlich_options INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(wunderlich_options INTERFACE -fsanitize=address,undefined)
+  target_compile_definitions(wunderlich_options INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O3")
+if(WUNDERLICH_FUZZ)
+  # Everything the fuzzer calls reports its coverage; only the fuzz targets themselves link the driver.
+  target_compile_options(wunderlich_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+if(WUNDERLICH_COVERAGE)
+  target_compile_options(wunderlich_options INTERFACE --coverage -fprofile-update=atomic)
+  target_link_options(wunderlich_options INTERFACE --coverage)
+endif()
