@@ -1,6 +1,8 @@
 /// Which elastic energy: the choice a scene makes.
 #pragma once
 
+#include "wunderlich/geometry/state.hpp"
+
 namespace wunderlich::energy {
 
 enum class Elastic {
@@ -9,10 +11,7 @@ enum class Elastic {
   sadowsky,     ///< narrow limit, order 0
 };
 
-enum class StrainMeasure {
-  logarithm,    ///< rotation vector over the hinge length: exact for the ring, monotone in the fold angle
-  printed,      ///< (2/l) vec(conj(q^s) q^(s+1)), as the paper prints it
-};
+using geometry::StrainMeasure;
 
 struct Model {
   Elastic elastic = Elastic::wunderlich;
