@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# tools/fuzz.sh [SECONDS]: feeds mutated scenes to the scene reader under sanitizers. The corpus grows in
+# build/fuzz/corpus; an input that breaks the reader is left in build/fuzz/ and named in the output.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds=${1:-60}
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz --target fuzz_scene
+mkdir -p build/fuzz/corpus
+build/fuzz/fuzz_scene -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+  -artifact_prefix=build/fuzz/ build/fuzz/corpus scenes

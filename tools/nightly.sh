@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Slower checks than ./test has time for, about an hour on two cores:
+#   longer fuzzing, the tests in random order and repeated, the sanitized tests with leak checks of the program,
+#   the core compiled against libc++, and a coverage report in build/coverage/report.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+tools/setup.sh test
+
+echo "nightly: everything that ./test does"
+./test
+
+echo "nightly: unit tests, 10 times in random order"
+GTEST_SHUFFLE=1 ctest --preset release -j "$(nproc)" --schedule-random --repeat until-fail:10
+
+echo "nightly: 30 minutes of fuzzing"
+tools/fuzz.sh 1800
+
+echo "nightly: the core with clang and libc++, as browsers will compile it"
+dpkg-query -W libc++-dev >/dev/null 2>&1 || apt-get install -y -qq libc++-dev libc++abi-dev
+cmake -S . -B build/libcxx -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-stdlib=libc++ \
+  -DWUNDERLICH_APP=OFF -DWUNDERLICH_TESTS=OFF -DWUNDERLICH_BENCH=OFF -DWUNDERLICH_WARNINGS_AS_ERRORS=ON
+cmake --build build/libcxx
+
+echo "nightly: coverage"
+command -v gcovr >/dev/null || apt-get install -y -qq gcovr
+cmake --preset coverage
+cmake --build --preset coverage
+ctest --preset coverage -j "$(nproc)"
+mkdir -p build/coverage/report
+gcovr --root . --filter src/ --exclude-throw-branches --html-details build/coverage/report/index.html --print-summary \
+  build/coverage

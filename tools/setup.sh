@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
+# `tools/setup.sh test` for every check as well. This file is the one list of what the project needs.
+# Does nothing, and asks for no rights, when everything is there.
+set -euo pipefail
+
+# A line each: what to look for (a command, or a Debian package when it starts with "lib" or ends in "-dev"),
+# the package that brings it, and who needs it.
+needs='
+g++                 g++                 run
+cmake               cmake               run
+ninja               ninja-build         run
+libeigen3-dev       libeigen3-dev       run
+libyaml-cpp-dev     libyaml-cpp-dev     run
+nlohmann-json3-dev  nlohmann-json3-dev  run
+libcli11-dev        libcli11-dev        run
+libfmt-dev          libfmt-dev          run
+libgtest-dev        libgtest-dev        run
+libbenchmark-dev    libbenchmark-dev    run
+node                nodejs              run
+npm                 npm                 run
+ca-certificates.crt ca-certificates     run
+python3             python3             test
+clang++             clang               test
+libclang-rt-14-dev  libclang-rt-14-dev  test
+clang-format        clang-format        test
+clang-tidy          clang-tidy          test
+'
+
+present() {
+  case $1 in
+    ca-certificates.crt) [ -s /etc/ssl/certs/ca-certificates.crt ] ;;
+    lib*|*-dev) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
+    *) command -v "$1" >/dev/null ;;
+  esac
+}
+
+missing() {
+  local probe package group
+  while read -r probe package group; do
+    [ -n "$probe" ] || continue
+    [ "$group" = run ] || [ "$1" = test ] || continue
+    present "$probe" || echo "$package"
+  done <<<"$needs"
+}
+
+install() {
+  if ! command -v apt-get >/dev/null; then
+    echo "setup: this is not a Debian system; please install the equivalents of: $*" >&2
+    exit 1
+  fi
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "setup: run as root, or install: $*" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  echo "setup: installing $*"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@"
+}
+
+group=${1:-run}
+case $group in run|test) ;; *) echo "usage: tools/setup.sh [run|test]" >&2; exit 2 ;; esac
+mapfile -t packages < <(missing "$group")
+[ ${#packages[@]} -eq 0 ] || install "${packages[@]}"
+
+node_major=$(node --version | sed 's/^v\([0-9]*\).*/\1/')
+if [ "$node_major" -lt 18 ]; then
+  echo "setup: node $(node --version) is too old for the report page; 18 or later is needed" >&2
+  exit 1
+fi
