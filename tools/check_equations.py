@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""Ties the code to the paper: reads `@eq KEY:NUMBER` tags and compares them with docs/equations.toml.
+
+    tools/check_equations.py              check, and that docs/equation-map.md is up to date
+    tools/check_equations.py --write      write docs/equation-map.md
+    tools/check_equations.py --self-test  plant faults in a temporary tree and see each reported
+
+A tag names an equation or section of the paper, `@eq Shen2015:11`, or another source of docs/references.bib,
+`@eq Sadowsky1930` or `@eq Bergou2008:4`; several may follow each other, separated by commas.
+"""
+
+import re
+import sys
+import tempfile
+import tomllib
+from collections import defaultdict
+from pathlib import Path
+
+KEY = r"[A-Z][A-Za-z]*\d{4}[a-z]?(?::[0-9A-Za-z]+(?:\.[0-9]+)*)?"
+TAG = re.compile(rf"@eq\s+({KEY}(?:\s*,\s*{KEY})*)")
+ANY_TAG = re.compile(r"@eq\b")
+STATUSES = ("implemented", "later", "not used")
+SUFFIXES = {".cpp", ".hpp", ".py", ".ts", ".js", ".in"}
+
+
+def read_tags(root):
+    """tag -> places ("file:line"), and faults for `@eq` that cannot be read."""
+    tags, faults = defaultdict(list), []
+    for folder in ("src", "apps", "tests"):
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix not in SUFFIXES or "node_modules" in path.parts:
+                continue
+            name = path.relative_to(root).as_posix()
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                groups = TAG.findall(line)
+                if len(groups) < len(ANY_TAG.findall(line)):
+                    faults.append(f"{name}:{number}: cannot read this @eq tag; write e.g. @eq Shen2015:11")
+                for tag in re.split(r"\s*,\s*", ",".join(groups)) if groups else []:
+                    tags[tag].append(f"{name}:{number}")
+    return tags, faults
+
+
+def read_bib_keys(root):
+    text = (root / "docs" / "references.bib").read_text(encoding="utf-8")
+    return set(re.findall(r"^@\w+\{([^,\s]+),", text, flags=re.M))
+
+
+def split_places(places):
+    """(in src or apps, in tests)"""
+    return [p for p in places if not p.startswith("tests/")], [p for p in places if p.startswith("tests/")]
+
+
+def check_entry(name, entry, places):
+    """What is wrong with one entry of equations.toml, given where it is tagged."""
+    where = f"docs/equations.toml: {name}"
+    code, tests = split_places(places)
+    status = entry.get("status")
+    if status not in STATUSES:
+        yield f"{where}: status is {status!r}; allowed: {', '.join(STATUSES)}"
+    if not entry.get("title"):
+        yield f"{where}: has no title"
+    if status == "implemented" and not code:
+        yield f"{where}: implemented, but no tag @eq {name} in src or apps"
+    if status == "implemented" and not tests:
+        yield f"{where}: implemented, but no tag @eq {name} in tests"
+    if status == "not used" and not entry.get("note"):
+        yield f"{where}: not used, and no note says why"
+    if status in ("later", "not used") and code and tests:
+        yield f"{where}: {status}, but tagged in {code[0]} and tested in {tests[0]}: call it implemented"
+
+
+def check(root):
+    """(faults, page): printable faults, and the map page as it should be."""
+    register = tomllib.loads((root / "docs" / "equations.toml").read_text(encoding="utf-8"))
+    entries = {f"{key}:{number}": entry for key, part in register.items() for number, entry in part.items()}
+    bib = read_bib_keys(root)
+    tags, faults = read_tags(root)
+    for tag, places in sorted(tags.items()):
+        key = tag.split(":")[0]
+        if key not in bib:
+            faults.append(f"{places[0]}: @eq {tag}: no source '{key}' in docs/references.bib")
+        elif key in register and tag not in entries:
+            faults.append(f"{places[0]}: @eq {tag}: no such entry in docs/equations.toml")
+    for key in register:
+        if key not in bib:
+            faults.append(f"docs/equations.toml: no source '{key}' in docs/references.bib")
+    for name, entry in entries.items():
+        faults += check_entry(name, entry, tags.get(name, []))
+    return faults, write_page(entries, tags)
+
+
+def links(places):
+    """Files with links, one a file; lines are left out so that the page changes only when tags move between files."""
+    files = dict.fromkeys(place.split(":")[0] for place in places)
+    return "<br>".join(f"[{name.removeprefix('src/wunderlich/')}](../{name})" for name in files) or "–"
+
+
+def sort_key(name):
+    key, _, number = name.partition(":")
+    # Equations (whole numbers) first, then sections (dotted numbers), then names.
+    kind = 0 if number.isdigit() else 1 if number[:1].isdigit() else 2
+    return key, kind, [int(part) if part.isdigit() else 0 for part in number.split(".")], number
+
+
+def write_page(entries, tags):
+    counts = defaultdict(int)
+    for entry in entries.values():
+        counts[entry.get("status")] += 1
+    lines = [
+        "# Equation map",
+        "",
+        "Generated by `tools/check_equations.py --write` from [equations.toml](equations.toml) and the `@eq` tags in the "
+        "code; do not edit.",
+        "A whole number is an equation of the paper, a dotted one a section, `alg1` Algorithm 1. "
+        + ", ".join(f"{counts[status]} {status}" for status in STATUSES) + ".",
+        "",
+        "| entry | what | status | code | tests |",
+        "|---|---|---|---|---|",
+    ]
+    notes = ["", "## Errata and notes", ""]
+    for name in sorted(entries, key=sort_key):
+        entry = entries[name]
+        code, tests = split_places(tags.get(name, []))
+        lines.append(f"| {name} | {entry['title']} | {entry['status']} | {links(code)} | {links(tests)} |")
+        if entry.get("erratum"):
+            notes.append(f"- **{name}**, printed: {entry['printed']}. Right: {entry['erratum']}.")
+        if entry.get("note"):
+            notes.append(f"- **{name}**: {entry['note']}")
+    others = sorted((tag for tag in tags if tag.split(":")[0] not in {e.split(":")[0] for e in entries}), key=sort_key)
+    lines += notes
+    if others:
+        lines += ["", "## Other sources", "", "Keys are those of [references.bib](references.bib).", "",
+                  "| source | code | tests |", "|---|---|---|"]
+        for tag in others:
+            code, tests = split_places(tags[tag])
+            lines.append(f"| {tag} | {links(code)} | {links(tests)} |")
+    return "\n".join(lines) + "\n"
+
+
+def check_page(root, page):
+    path = root / "docs" / "equation-map.md"
+    if path.exists() and path.read_text(encoding="utf-8") == page:
+        return []
+    return ["docs/equation-map.md: out of date; run tools/check_equations.py --write"]
+
+
+CLEAN_TREE = {
+    "docs/references.bib": "@article{Shen2015,\n}\n@article{Sadowsky1930,\n}\n",
+    "docs/equations.toml": '[Shen2015]\n1 = {title = "a", status = "implemented"}\n2 = {title = "b", status = "later"}\n',
+    "src/a.hpp": "/// @eq Shen2015:1, Sadowsky1930\n",
+    "tests/a.cpp": "// @eq Shen2015:1.\n",
+}
+PLANTED = [
+    ("src/b.hpp", "/// @eq Shen2015:99\n", "src/b.hpp:1: @eq Shen2015:99: no such entry"),
+    ("src/b.hpp", "\n/// @eq Nobody1999:1\n", "src/b.hpp:2: @eq Nobody1999:1: no source"),
+    ("src/b.hpp", "/// @eq 11\n", "src/b.hpp:1: cannot read this @eq tag"),
+    ("src/a.hpp", "", "no tag @eq Shen2015:1 in src"),
+    ("tests/a.cpp", "", "no tag @eq Shen2015:1 in tests"),
+    ("docs/equations.toml", '[Shen2015]\n1 = {title = "a", status = "done"}\n', "status is 'done'"),
+    ("docs/equations.toml", '[Shen2015]\n1 = {title = "a", status = "later"}\n', "call it implemented"),
+    ("docs/equations.toml", '[Shen2015]\n1 = {title = "a", status = "not used"}\n', "no note says why"),
+]
+
+
+def faults_of(tree):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in tree.items():
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        return check(Path(folder))[0]
+
+
+def self_test():
+    assert not faults_of(CLEAN_TREE), faults_of(CLEAN_TREE)
+    for name, text, expected in PLANTED:
+        faults = faults_of(CLEAN_TREE | {name: text})
+        assert any(expected in fault for fault in faults), (expected, faults)
+    print(f"check_equations: self-test found all {len(PLANTED)} planted faults")
+
+
+def main():
+    if "--self-test" in sys.argv:
+        return self_test()
+    root = Path(__file__).resolve().parent.parent
+    faults, page = check(root)
+    if "--write" in sys.argv:
+        (root / "docs" / "equation-map.md").write_text(page, encoding="utf-8")
+    faults += check_page(root, page)
+    print("\n".join(faults) or "check_equations: tags, register and map agree")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
