@@ -6,9 +6,9 @@
 namespace wunderlich::energy {
 
 enum class Elastic {
-  wunderlich,   ///< exact width integral, atanh(x)/x              @eq Shen2015:3
-  truncated,    ///< its Taylor series to `taylor_order`           @eq Shen2015:4
-  sadowsky,     ///< narrow limit, order 0
+  wunderlich,  ///< exact width integral, atanh(x)/x              @eq Shen2015:3
+  truncated,   ///< its Taylor series to `taylor_order`           @eq Shen2015:4
+  sadowsky,    ///< narrow limit, order 0
 };
 
 using geometry::StrainMeasure;
