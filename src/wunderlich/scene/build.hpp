@@ -1,0 +1,34 @@
+/// From a checked tree to a scene: what the table of keys alone cannot say is checked here.
+#pragma once
+
+#include "wunderlich/scene/scene.hpp"
+#include "wunderlich/scene/schema.hpp"
+
+namespace wunderlich::scene {
+
+/// The strip, without `clamped`, which follows from the clamps.
+geometry::RibbonSpec build_ribbon(const Cell& root);
+
+/// Clamps, pins, forces, gravity; sets `ribbon.clamped`. Throws InputError for supports that contradict each other
+/// or ask for more than the strip's length.
+constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSpec& ribbon);
+
+/// Solver options; `last_key` is the time of the last keyframe, 0 without any.
+SolverOptions build_solver(const Cell& root, double last_key);
+
+/// Output options; throws InputError when they ask for more data than is sensible for this strip.
+OutputOptions build_output(const Cell& root, const geometry::RibbonSpec& ribbon);
+
+/// A support with the place it was written at, for messages.
+struct PlacedSupport {
+  Cell cell;
+  double u = 0;      ///< arc length of its node [m]
+  bool end = false;  ///< a clamp of an end node's own frame
+  constraint::Support support;
+};
+
+/// Throws InputError when two supports hold the same part of the strip, or stand farther apart than the strip
+/// between them is long, at any time.
+void check_supports(const geometry::RibbonSpec& ribbon, const std::vector<PlacedSupport>& supports);
+
+}  // namespace wunderlich::scene

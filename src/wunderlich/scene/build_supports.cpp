@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "wunderlich/scene/build.hpp"
+
+namespace wunderlich::scene {
+
+namespace {
+
+using constraint::LoadKey;
+using constraint::Orientation;
+using constraint::PoseKey;
+using constraint::Support;
+
+/// What the reader needs to know of the strip while it places things on it.
+struct Strip {
+  const geometry::RibbonSpec& spec;
+  std::vector<double> node_u;
+  bool loop() const { return spec.closure == geometry::Closure::loop; }
+  int last_node() const { return loop() ? spec.segments - 1 : spec.segments; }
+};
+
+Vec3 vector(const Cell& cell) {
+  const std::vector<double> v = numbers(cell);
+  return {v[0], v[1], v[2]};
+}
+
+[[noreturn]] void fail_index(const Cell& cell, long value, int last) {
+  fail(cell, fmt::format("{} is not on the strip; must be a whole number from 0 to {}", value, last));
+}
+
+double arc_length(const Cell& cell, const Strip& strip) {
+  const double u = number(cell);
+  if (u > strip.spec.length) {
+    fail(cell, fmt::format("{:g} is beyond the strip; must be a number from 0 to {:g} m", u, strip.spec.length));
+  }
+  return u;
+}
+
+/// `start` and `end` name nodes of an open strip.
+int end_node(const Cell& at, const Strip& strip) {
+  if (strip.loop()) fail(at, "a loop has no ends; give a map such as {node: 0}");
+  return text(at) == "start" ? 0 : strip.spec.segments;
+}
+
+/// The node that a pin or a force acts on.
+int node_at(const Cell& at, const Strip& strip) {
+  if (at.value == nullptr || at.value->kind != Value::Kind::map) return end_node(at, strip);
+  const Cell node = child(at, "node");
+  if (node.value != nullptr) {
+    const long i = integer(node);
+    if (i > strip.last_node()) fail_index(node, i, strip.last_node());
+    return static_cast<int>(i);
+  }
+  const double u = arc_length(child(at, "u"), strip);
+  const auto above = std::lower_bound(strip.node_u.begin(), strip.node_u.end() - 1, u);
+  const auto below = above == strip.node_u.begin() ? above : above - 1;
+  const auto nearest = u - *below < *above - u ? below : above;
+  const auto index = static_cast<int>(nearest - strip.node_u.begin());
+  return strip.loop() ? index % strip.spec.segments : index;
+}
+
+/// Where a clamp acts: an end node of an open strip, or a segment.
+void place_clamp(const Cell& at, const Strip& strip, PlacedSupport& clamp) {
+  const int last = strip.spec.segments - 1;
+  const auto at_end = [&](int node) {
+    clamp.support.node = node;
+    clamp.end = true;
+  };
+  if (at.value == nullptr || at.value->kind != Value::Kind::map) {
+    if (strip.loop()) fail(at, "a loop has no ends to clamp; give a map such as {segment: 0}");
+    return at_end(end_node(at, strip));
+  }
+  long segment = 0;
+  if (const Cell node = child(at, "node"); node.value != nullptr) {
+    const long i = integer(node);
+    if (!strip.loop() && (i == 0 || i == strip.spec.segments)) return at_end(static_cast<int>(i));
+    fail(node, fmt::format("{} is no end of an open strip; a clamp inside it holds a segment, such as {{segment: {}}}",
+                           i, std::min<long>(i, last)));
+  } else if (const Cell u_cell = child(at, "u"); u_cell.value != nullptr) {
+    const double u = arc_length(u_cell, strip);
+    if (!strip.loop() && u == 0) return at_end(0);
+    if (!strip.loop() && u == strip.spec.length) return at_end(strip.spec.segments);
+    const auto above = std::upper_bound(strip.node_u.begin(), strip.node_u.end(), u);
+    segment = std::min<long>(above - strip.node_u.begin() - 1, last);
+  } else {
+    segment = integer(child(at, "segment"));
+    if (segment > last) fail_index(child(at, "segment"), segment, last);
+  }
+  clamp.support.node = static_cast<int>(segment);
+  clamp.support.segment = static_cast<int>(segment);
+}
+
+std::array<bool, 3> held_axes(const Cell& free_cell) {
+  std::array<bool, 3> held{true, true, true};
+  for (const std::string& axis : words(free_cell)) {
+    bool& hold = held[static_cast<std::size_t>(axis[0] - 'x')];
+    if (!hold) fail(free_cell, "`" + axis + "` is given twice");
+    hold = false;
+  }
+  return held;
+}
+
+/// The tangent and normal as written; a frame only once both are known.
+struct Axes {
+  Vec3 tangent;
+  Vec3 normal;
+};
+
+Vec3 direction(const Cell& cell) {
+  const Vec3 v = vector(cell);
+  if (!(v.norm() > 1e-9)) fail(cell, "is (nearly) zero; a direction must be longer than 1e-9");
+  return v.normalized();
+}
+
+Quat frame_of(const Axes& axes, const Cell& cell) {
+  const double cosine = axes.tangent.dot(axes.normal);
+  if (std::abs(cosine) > 1e-6) {
+    fail(cell,
+         fmt::format("tangent and normal must be perpendicular; they stand at {:.4f} degrees (a normal that is not "
+                     "given is [0, 0, 1], or that of the keyframe before)",
+                     std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / EIGEN_PI));
+  }
+  const Vec3 d1 = (axes.normal - cosine * axes.tangent).normalized();
+  Mat3 rotation;
+  rotation << d1, axes.tangent.cross(d1), axes.tangent;
+  return Quat(rotation);
+}
+
+/// Times must increase strictly; called with the keys read so far.
+template <typename Key>
+double next_time(const Cell& keyframe, const std::vector<Key>& keys) {
+  const Cell cell = child(keyframe, "time");
+  const double time = number(cell);
+  if (!keys.empty() && !(time > keys.back().time)) {
+    fail(cell, fmt::format("{:g} does not come after the keyframe before, at {:g}; times must increase", time,
+                           keys.back().time));
+  }
+  return time;
+}
+
+void check_half_turn(const Cell& keyframe, const std::vector<PoseKey>& keys) {
+  if (keys.size() < 2) return;
+  const double angle = keys[keys.size() - 2].pose.frame.angularDistance(keys.back().pose.frame);
+  if (angle < EIGEN_PI - 1e-6) return;
+  fail(keyframe,
+       "the frame turns by half a turn from the keyframe before, so its way is not defined; use `turn` for turns "
+       "about the tangent, or a keyframe in between");
+}
+
+constraint::Motion motion_of(const Cell& cell, const Vec3& rest_position, bool with_frame) {
+  constraint::Motion motion;
+  PoseKey key;
+  const auto position = child(cell, "position");
+  key.pose.position = position.value != nullptr ? vector(position) : rest_position;
+  Axes axes{Vec3::UnitX(), Vec3::UnitZ()};
+  if (with_frame) {
+    axes = {direction(child(cell, "tangent")), direction(child(cell, "normal"))};
+    key.pose.frame = frame_of(axes, cell);
+    key.turn = number(child(cell, "turn"));
+  }
+  const Cell keyframes = child(cell, "keyframes");
+  for (std::size_t i = 0; i < count(keyframes); ++i) {
+    const Cell keyframe = element(keyframes, i);
+    key.time = next_time(keyframe, motion.keys);
+    if (const Cell c = child(keyframe, "position"); c.value != nullptr) key.pose.position = vector(c);
+    if (with_frame) {
+      if (const Cell c = child(keyframe, "tangent"); c.value != nullptr) axes.tangent = direction(c);
+      if (const Cell c = child(keyframe, "normal"); c.value != nullptr) axes.normal = direction(c);
+      if (const Cell c = child(keyframe, "turn"); c.value != nullptr) key.turn = number(c);
+      key.pose.frame = frame_of(axes, keyframe);
+    }
+    motion.keys.push_back(key);
+    check_half_turn(keyframe, motion.keys);
+  }
+  if (motion.keys.empty()) motion.keys.push_back(key);
+  return motion;
+}
+
+PlacedSupport clamp_of(const Cell& cell, const Strip& strip) {
+  PlacedSupport clamp;
+  clamp.cell = cell;
+  place_clamp(child(cell, "at"), strip, clamp);
+  Support& support = clamp.support;
+  clamp.u = strip.node_u[static_cast<std::size_t>(support.node)];
+  support.hold_position = held_axes(child(cell, "free"));
+  const bool full = text(child(cell, "orientation")) == "full";
+  support.orientation = full ? Orientation::full : Orientation::about_tangent;
+  // Only a whole frame can be held at the end itself; a rotation about the centerline is that of a segment.
+  if (clamp.end && !full) support.segment = std::min(support.node, strip.spec.segments - 1);
+  support.motion = motion_of(cell, {clamp.u, 0, 0}, true);
+  return clamp;
+}
+
+PlacedSupport pin_of(const Cell& cell, const Strip& strip) {
+  PlacedSupport pin;
+  pin.cell = cell;
+  Support& support = pin.support;
+  support.node = node_at(child(cell, "at"), strip);
+  support.orientation = Orientation::free;
+  pin.u = strip.node_u[static_cast<std::size_t>(support.node)];
+  support.hold_position = held_axes(child(cell, "free"));
+  if (support.hold_position == std::array<bool, 3>{})
+    fail(child(cell, "free"), "a pin that is free in x, y and z holds nothing");
+  support.motion = motion_of(cell, {pin.u, 0, 0}, false);
+  return pin;
+}
+
+constraint::Load load_of(const Cell& cell, const Strip& strip) {
+  constraint::Load load;
+  load.node = node_at(child(cell, "at"), strip);
+  load.frame = text(child(cell, "frame")) == "space" ? constraint::LoadFrame::space : constraint::LoadFrame::material;
+  LoadKey key{0, vector(child(cell, "force")), vector(child(cell, "torque"))};
+  const Cell keyframes = child(cell, "keyframes");
+  for (std::size_t i = 0; i < count(keyframes); ++i) {
+    const Cell keyframe = element(keyframes, i);
+    key.time = next_time(keyframe, load.keys);
+    if (const Cell c = child(keyframe, "force"); c.value != nullptr) key.force = vector(c);
+    if (const Cell c = child(keyframe, "torque"); c.value != nullptr) key.torque = vector(c);
+    load.keys.push_back(key);
+  }
+  if (load.keys.empty()) load.keys.push_back(key);
+  const bool acts = std::any_of(load.keys.begin(), load.keys.end(),
+                                [](const LoadKey& k) { return !k.force.isZero(0) || !k.torque.isZero(0); });
+  if (!acts) fail(cell, "has neither a force nor a torque");
+  return load;
+}
+
+}  // namespace
+
+constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSpec& ribbon) {
+  const Strip strip{ribbon, geometry::make_ribbon(ribbon).node_u};
+  constraint::Surroundings surroundings;
+  surroundings.gravity = vector(child(root, "gravity"));
+  std::vector<PlacedSupport> placed;
+  const Cell clamps = child(root, "clamps");
+  for (std::size_t i = 0; i < count(clamps); ++i) placed.push_back(clamp_of(element(clamps, i), strip));
+  const Cell pins = child(root, "pins");
+  for (std::size_t i = 0; i < count(pins); ++i) placed.push_back(pin_of(element(pins, i), strip));
+  check_supports(ribbon, placed);
+  for (const PlacedSupport& p : placed) {
+    if (p.end && p.support.orientation == Orientation::full) ribbon.clamped[p.support.node == 0 ? 0 : 1] = true;
+    surroundings.supports.push_back(p.support);
+  }
+  const Cell forces = child(root, "forces");
+  for (std::size_t i = 0; i < count(forces); ++i) surroundings.loads.push_back(load_of(element(forces, i), strip));
+  const bool floating = surroundings.supports.empty() && !surroundings.gravity.isZero(0);
+  if (floating) fail(child(root, "gravity"), "nothing holds the strip against it; add a clamp or a pin");
+  return surroundings;
+}
+
+}  // namespace wunderlich::scene

@@ -1,0 +1,96 @@
+#include "wunderlich/scene/read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "wunderlich/base/error.hpp"
+#include "wunderlich/scene/build.hpp"
+#include "wunderlich/scene/text.hpp"
+
+namespace wunderlich::scene {
+
+namespace {
+
+constexpr std::size_t longest_path = 4096;
+constexpr std::size_t largest_file = std::size_t{4} << 20;
+
+const ShippedScene* find_shipped(const std::string& name) {
+  for (const ShippedScene& scene : shipped_scenes()) {
+    if (scene.name == name) return &scene;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> shipped_names() {
+  std::vector<std::string> names;
+  for (const ShippedScene& scene : shipped_scenes()) names.push_back(scene.name);
+  return names;
+}
+
+[[noreturn]] void fail_missing(const std::string& name) {
+  const std::string guess = nearest(name, shipped_names());
+  throw InputError(fmt::format("{}: no such file, and no shipped scene of this name{}; shipped are {}", shown(name),
+                               guess.empty() ? "" : fmt::format(" (did you mean `{}`?)", guess),
+                               joined(shipped_names())));
+}
+
+/// Reads at most `largest_file` bytes, so that no device or growing file can fill the memory.
+std::string file_text(const std::string& path) {
+  const std::string name = shown(path, longest_path);
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail_missing(path);
+  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a folder; a scene is a YAML file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": is not a regular file");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(name + ": cannot be read: " + std::strerror(errno));
+  std::string text(largest_file + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) throw InputError(name + ": cannot be read: " + std::strerror(errno));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > largest_file) throw InputError(name + ": is larger than 4 MiB, too large for a scene");
+  return text;
+}
+
+double last_key_time(const constraint::Surroundings& surroundings) {
+  double last = 0;
+  for (const auto& support : surroundings.supports) last = std::max(last, end_time(support.motion));
+  for (const auto& load : surroundings.loads) last = std::max(last, load.keys.back().time);
+  return last;
+}
+
+}  // namespace
+
+Scene read_scene_text(const std::string& text, const std::string& source, const std::vector<std::string>& overrides) {
+  Value document = parse_document(text, shown(source, longest_path));
+  if (!overrides.empty() && document.kind == Value::Kind::map) {
+    for (const std::string& assignment : overrides) apply_override(document, assignment);
+  }
+  check_document(document);
+  const Cell root = root_cell(document);
+  Scene scene;
+  scene.name = std::filesystem::path(source).stem().string();
+  const Cell title = child(root, "title");
+  scene.title = title.value == nullptr ? scene.name : title.value->text;
+  scene.ribbon = build_ribbon(root);
+  scene.surroundings = build_surroundings(root, scene.ribbon);
+  scene.solver = build_solver(root, last_key_time(scene.surroundings));
+  scene.output = build_output(root, scene.ribbon);
+  scene.resolved = to_yaml(document);
+  return scene;
+}
+
+Scene read_scene(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  if (const ShippedScene* shipped = find_shipped(name_or_path)) {
+    return read_scene_text(shipped->text, "scenes/" + shipped->name + ".yaml", overrides);
+  }
+  return read_scene_text(file_text(name_or_path), name_or_path, overrides);
+}
+
+}  // namespace wunderlich::scene
