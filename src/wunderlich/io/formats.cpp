@@ -1,0 +1,55 @@
+#include "wunderlich/io/formats.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "wunderlich/base/error.hpp"
+
+namespace wunderlich::io {
+
+namespace {
+
+constexpr std::array<std::pair<Format, std::string_view>, 6> names{{{Format::vtp, "vtp"},
+                                                                    {Format::glb, "glb"},
+                                                                    {Format::pc2, "pc2"},
+                                                                    {Format::obj, "obj"},
+                                                                    {Format::svg, "svg"},
+                                                                    {Format::html, "html"}}};
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+std::string_view name(Format format) {
+  return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.first == format; })->second;
+}
+
+Format parse_format(std::string_view text) {
+  for (const auto& [format, known] : names) {
+    if (known == text) return format;
+  }
+  throw InputError(fmt::format("unknown format '{}'; allowed are vtp, glb, pc2, obj, svg, html", text));
+}
+
+std::vector<Format> parse_formats(std::string_view list) {
+  if (trimmed(list) == "none") return {};
+  std::vector<Format> formats;
+  while (true) {
+    const std::size_t comma = list.find(',');
+    const Format format = parse_format(trimmed(list.substr(0, comma)));
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+    if (comma == std::string_view::npos) return formats;
+    list.remove_prefix(comma + 1);
+  }
+}
+
+std::vector<Format> default_formats() { return {Format::vtp, Format::glb, Format::svg, Format::html}; }
+
+}  // namespace wunderlich::io

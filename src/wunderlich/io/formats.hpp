@@ -1,0 +1,31 @@
+/// The file formats a run can be written in.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace wunderlich::io {
+
+enum class Format {
+  vtp,   ///< `ribbon.pvd` and `frames/*.vtp`: ParaView
+  glb,   ///< `ribbon.glb`: any 3D viewer; short clips in Blender
+  pc2,   ///< `ribbon.pc2` and `ribbon_rest.obj`: long clips in Blender
+  obj,   ///< `ribbon.obj`: the final surface
+  svg,   ///< `pattern.svg`: the strip unrolled flat
+  html,  ///< `report.html`
+};
+
+/// Name as on the command line.
+std::string_view name(Format format);
+
+/// One name. Throws InputError with the names that are allowed.
+Format parse_format(std::string_view text);
+
+/// Comma-separated names in any order, or `none`. Throws InputError.
+std::vector<Format> parse_formats(std::string_view list);
+
+/// What a run writes without `--formats`.
+std::vector<Format> default_formats();
+
+}  // namespace wunderlich::io

@@ -1,0 +1,184 @@
+#include "wunderlich/io/report.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "wunderlich/io/bytes.hpp"
+#include "wunderlich/io/summary_json.hpp"
+
+namespace wunderlich::io {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view placeholder = "\"__WUNDERLICH_DATA__\"";
+constexpr double largest_count = 65535;
+constexpr std::size_t byte_budget = 6u << 20;  // of the moving points, before base64
+
+/// The cube in which points are stored as 16-bit numbers.
+struct Cube {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
+  Vec3 high = Vec3::Constant(std::numeric_limits<double>::lowest());
+  double size() const { return std::max((high - low).maxCoeff(), std::numeric_limits<double>::min()); }
+  void include(const Vec3& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+std::array<Vec3, 2> ruling_ends(const CenterlineSample& sample, double width) {
+  const Vec3 half = 0.5 * width * (sample.d2 + sample.eta * sample.d3);
+  return {sample.r - half, sample.r + half};
+}
+
+Cube bounding_cube(const std::vector<const Frame*>& frames, double width) {
+  Cube cube;
+  for (const Frame* frame : frames) {
+    for (const Vec3& p : frame->surface.points) cube.include(p);
+    for (const CenterlineSample& sample : frame->centerline) {
+      for (const Vec3& p : ruling_ends(sample, width)) cube.include(p);
+    }
+  }
+  return cube;
+}
+
+void append_point(std::string& out, const Cube& cube, const Vec3& p) {
+  for (int k = 0; k < 3; ++k) {
+    append(out, static_cast<std::uint16_t>(std::lround((p[k] - cube.low[k]) / cube.size() * largest_count)));
+  }
+}
+
+/// Octahedral map of a unit vector to two 16-bit numbers (Cigolle et al. 2014).
+void append_normal(std::string& out, const Vec3& n) {
+  Vec2 p = Vec2(n.x(), n.y()) / n.lpNorm<1>();
+  if (n.z() < 0) {
+    p = Vec2((1 - std::abs(p.y())) * std::copysign(1.0, p.x()), (1 - std::abs(p.x())) * std::copysign(1.0, p.y()));
+  }
+  for (int k = 0; k < 2; ++k) append(out, static_cast<std::int16_t>(std::lround(p[k] * 32767)));
+}
+
+template <class Get>
+std::string column(const std::vector<CenterlineSample>& centerline, Get get) {
+  std::string out;
+  for (const CenterlineSample& sample : centerline) append(out, static_cast<float>(get(sample)));
+  return base64(out);
+}
+
+Json frame_json(const Frame& frame, const Cube& cube, double width) {
+  std::string points, normals, rulings;
+  for (const Vec3& p : frame.surface.points) append_point(points, cube, p);
+  for (const Vec3& n : frame.surface.normals) append_normal(normals, n);
+  for (const CenterlineSample& sample : frame.centerline) {
+    for (const Vec3& p : ruling_ends(sample, width)) append_point(rulings, cube, p);
+  }
+  const auto& line = frame.centerline;
+  return {{"time", frame.time},
+          {"points", base64(points)},
+          {"normals", base64(normals)},
+          {"rulings", base64(rulings)},
+          {"kappa", column(line, [](const CenterlineSample& s) { return s.kappa; })},
+          {"tau", column(line, [](const CenterlineSample& s) { return s.tau; })},
+          {"eta", column(line, [](const CenterlineSample& s) { return s.eta; })}};
+}
+
+Json mesh_json(const Mesh& mesh) {
+  std::string triangles;
+  for (const auto& triangle : mesh.triangles) {
+    for (const int point : triangle) append(triangles, static_cast<std::uint32_t>(point));
+  }
+  Json out = {{"triangles", base64(triangles)}};
+  for (const PointField& field : mesh.fields) {
+    if (field.name != "u" && field.name != "v") continue;
+    std::string values;
+    for (const double value : field.values) append(values, static_cast<float>(value));
+    out[field.name] = base64(values);
+  }
+  return out;
+}
+
+Json history_json(const std::vector<HistoryRow>& history) {
+  Json out = {{"time", Json::array()},    {"elastic", Json::array()},    {"kinetic", Json::array()},
+              {"gravity", Json::array()}, {"total", Json::array()},      {"normalized", Json::array()},
+              {"length", Json::array()},  {"torsion", Json::array()},    {"ruling", Json::array()},
+              {"area", Json::array()},    {"iterations", Json::array()}, {"step_us", Json::array()}};
+  for (const HistoryRow& row : history) {
+    out["time"].push_back(row.time);
+    out["elastic"].push_back(row.energy.elastic);
+    out["kinetic"].push_back(row.energy.kinetic);
+    out["gravity"].push_back(row.energy.gravity);
+    out["total"].push_back(row.energy.total());
+    out["normalized"].push_back(row.energy.normalized);
+    out["length"].push_back(row.constraints.max_length_error);
+    out["torsion"].push_back(row.constraints.max_torsion_mismatch);
+    out["ruling"].push_back(row.constraints.max_ruling_ratio);
+    out["area"].push_back(row.area_error);
+    out["iterations"].push_back(row.iterations);
+    out["step_us"].push_back(row.step_us);
+  }
+  return out;
+}
+
+/// Every k-th frame, the first and the last always, so that the points stay within the budget.
+std::vector<const Frame*> chosen(const std::vector<Frame>& frames) {
+  const std::size_t bytes = 10 * frames.front().surface.points.size() + 24 * frames.front().centerline.size();
+  const std::size_t most = std::max<std::size_t>(2, byte_budget / std::max<std::size_t>(1, bytes));
+  std::vector<const Frame*> out;
+  const std::size_t count = std::min(most, frames.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    out.push_back(&frames[count == 1 ? 0 : k * (frames.size() - 1) / (count - 1)]);
+  }
+  return out;
+}
+
+Json report_json(const RunOutput& output) {
+  const std::vector<const Frame*> frames = chosen(output.frames);
+  const double width = output.pattern.width;
+  const Cube cube = bounding_cube(frames, width);
+  Json data;
+  data["title"] = output.title;
+  data["summary"] = Json::parse(summary_json(output.summary));
+  data["parameters"] = output.parameters;
+  data["scene"] = output.scene_text;
+  data["length"] = output.pattern.length;
+  data["width"] = width;
+  data["history"] = history_json(output.history);
+  data["recorded_frames"] = output.frames.size();
+  data["low"] = {cube.low.x(), cube.low.y(), cube.low.z()};
+  data["scale"] = cube.size() / largest_count;
+  data["mesh"] = mesh_json(frames.front()->surface);
+  data["u"] = column(frames.front()->centerline, [](const CenterlineSample& s) { return s.u; });
+  data["frames"] = Json::array();
+  for (const Frame* frame : frames) data["frames"].push_back(frame_json(*frame, cube, width));
+  return data;
+}
+
+/// JSON that may stand in a script element: no text of the scene can end it.
+std::string script_safe(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string report_page(const RunOutput& output) {
+  assert(!output.frames.empty());
+  const std::size_t position = output.report_template.find(placeholder);
+  assert(position != std::string_view::npos && "the report template has no place for the data");
+  std::string page(output.report_template.substr(0, position));
+  page += script_safe(report_json(output).dump(-1, ' ', false, Json::error_handler_t::replace));
+  page += output.report_template.substr(position + placeholder.size());
+  return page;
+}
+
+}  // namespace wunderlich::io

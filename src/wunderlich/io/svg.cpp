@@ -1,0 +1,107 @@
+#include "wunderlich/io/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace wunderlich::io {
+
+namespace {
+
+constexpr double mm = 1000;  // per metre
+
+struct Box {
+  double left = 0, right = 0, top = 0, bottom = 0;
+};
+
+/// Millimetres, y down as SVG has it.
+Vec2 on_paper(const Vec2& p) { return {mm * p.x(), -mm * p.y()}; }
+
+Box bounds(const FlatPattern& pattern) {
+  Box box{0, mm * pattern.length, -0.5 * mm * pattern.width, 0.5 * mm * pattern.width};
+  for (const auto& ruling : {pattern.rulings.front(), pattern.rulings.back()}) {
+    for (const Vec2& end : ruling) {
+      box.left = std::min(box.left, on_paper(end).x());
+      box.right = std::max(box.right, on_paper(end).x());
+    }
+  }
+  return box;
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (static_cast<unsigned char>(c) >= 0x20)
+      out += c;
+  }
+  return out;
+}
+
+/// Fold lines of one sign, those at the ends left out: they lie on the cut.
+std::string folds(const FlatPattern& pattern, double sign, double largest) {
+  std::string out;
+  for (std::size_t i = 1; i + 1 < pattern.rulings.size(); ++i) {
+    const double angle = sign * pattern.fold_angle[i];
+    if (angle <= 1e-9) continue;
+    const Vec2 a = on_paper(pattern.rulings[i][0]);
+    const Vec2 b = on_paper(pattern.rulings[i][1]);
+    out += fmt::format(
+        R"(<line x1="{:.4f}" y1="{:.4f}" x2="{:.4f}" y2="{:.4f}" opacity="{:.3f}"><title>node {}: {:.3f} degrees</title></line>)",
+        a.x(), a.y(), b.x(), b.y(), 0.2 + 0.8 * angle / largest, i, angle * 180 / std::numbers::pi);
+    out += '\n';
+  }
+  return out;
+}
+
+std::string outline(const FlatPattern& pattern) {
+  const auto& first = pattern.rulings.front();
+  const auto& last = pattern.rulings.back();
+  std::string points;
+  for (const Vec2& p : {first[0], last[0], last[1], first[1]}) {
+    points += fmt::format("{:.4f},{:.4f} ", on_paper(p).x(), on_paper(p).y());
+  }
+  return points;
+}
+
+}  // namespace
+
+std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
+  assert(pattern.rulings.size() >= 2 && pattern.rulings.size() == pattern.fold_angle.size());
+  double largest = 0;
+  for (const double angle : pattern.fold_angle) largest = std::max(largest, std::abs(angle));
+  const Box box = bounds(pattern);
+  const double margin = 5;                                                    // mm
+  const double letter = std::clamp(0.02 * (box.right - box.left), 2.5, 60.);  // mm
+  const double stroke = letter / 12;
+  const double left = box.left - margin, top = box.top - margin;
+  const double width = box.right - box.left + 2 * margin;
+  const double height = box.bottom - box.top + 2 * margin + 2 * letter;
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2:.4f}mm\" height=\"{3:.4f}mm\" "
+      "viewBox=\"{0:.4f} {1:.4f} {2:.4f} {3:.4f}\">\n<title>{4}</title>\n",
+      left, top, width, height, escaped(title));
+  out += fmt::format(
+      "<style>#cut{{fill:none;stroke:#000;stroke-width:{0:.3f}}} #valley,#mountain{{fill:none;stroke-width:{0:.3f}}}"
+      " #valley{{stroke:#1257c2;stroke-dasharray:{1:.3f} {0:.3f}}} #mountain{{stroke:#c8321e;stroke-dasharray:"
+      "{1:.3f} {0:.3f} {0:.3f} {0:.3f}}} #legend{{font:{2:.3f}px sans-serif;fill:#444}}</style>\n",
+      stroke, 4 * stroke, letter);
+  out += "<g id=\"valley\">\n" + folds(pattern, 1, largest) + "</g>\n";
+  out += "<g id=\"mountain\">\n" + folds(pattern, -1, largest) + "</g>\n";
+  out += fmt::format("<g id=\"cut\"><polygon points=\"{}\"/></g>\n", outline(pattern));
+  out += fmt::format(
+      "<g id=\"legend\"><text x=\"{:.4f}\" y=\"{:.4f}\">{}: {:.6g} × {:.6g} mm, front; black: cut, blue: valley, red: "
+      "mountain</text></g>\n",
+      box.left, box.bottom + 1.6 * letter, escaped(title), mm * pattern.length, mm * pattern.width);
+  return out + "</svg>\n";
+}
+
+}  // namespace wunderlich::io
