@@ -1,0 +1,11 @@
+/// The report page without its data, built from web/report.
+#pragma once
+
+#include <string_view>
+
+namespace wunderlich::report {
+
+/// HTML with one place for the data of a run, see `wunderlich::io::report_page`.
+std::string_view report_template();
+
+}  // namespace wunderlich::report
