@@ -1,0 +1,298 @@
+#include "wunderlich/solver/chain_objective.hpp"
+
+#include <cassert>
+#include <cmath>
+
+#include "wunderlich/energy/joint_energy.hpp"
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::solver {
+
+using constraint::LoadFrame;
+using constraint::Orientation;
+using energy::Bending;
+using geometry::Chain;
+using geometry::Kinematics;
+using geometry::Ribbon;
+using math::ChainLink;
+using math::ChainRow;
+using math::ChainSystem;
+
+namespace {
+
+double rigidity(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width; }
+
+double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem) {
+  return problem.barrier * ribbon.bending_stiffness * ribbon.length / ribbon.width;
+}
+
+Bending bending_at(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                   std::size_t i) {
+  return energy::bending(problem.model.strain, geometry::fold_length(ribbon, i), chain.kappa[i], chain.eta[i],
+                         k.fold[i]);
+}
+
+/// D w times the length of the hinge at `node` that lies in `link`: half the link, none where there is no hinge.
+double weight_at(const Ribbon& ribbon, std::size_t link, std::size_t node) {
+  return geometry::fold_length(ribbon, node) > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
+}
+
+/// Turn of the frame `q` about its tangent against `reference` transported along the shortest rotation of the
+/// tangent, and the row that is its gradient.                                            @eq Shen2015:18
+struct TangentTurn {
+  double angle = 0;
+  Vec3 gradient = Vec3::Zero();
+};
+
+TangentTurn tangent_turn(const Quat& q, const Quat& reference) {
+  const Vec3 t0 = reference * Vec3::UnitZ(), t1 = q * Vec3::UnitZ();
+  const Quat carried = Quat::FromTwoVectors(t0, t1) * reference;
+  const Vec3 turn = math::log_map(q * carried.conjugate());
+  return {turn.dot(t1), (t0 + t1) / (1 + t0.dot(t1))};
+}
+
+/// Calls `row(node, v, theta, residual)` for each row of a hold.
+template <class Emit>
+void for_each_row(const Hold& hold, const Kinematics& k, const Emit& emit) {
+  const auto i = static_cast<std::size_t>(hold.node);
+  const Vec3 gap = k.r[i] - hold.target.position;
+  for (int c = 0; c < 3; ++c) {
+    if (hold.position[static_cast<std::size_t>(c)]) emit(Vec3::Unit(c), Vec3::Zero(), gap[c]);
+  }
+  if (hold.orientation == Orientation::full) {
+    // The step's total rotation is exactly minus this vector, so the row is linear.
+    const Vec3 turn = math::log_map(k.q[i] * hold.target.frame.conjugate());
+    for (int c = 0; c < 3; ++c) emit(Vec3::Zero(), Vec3::Unit(c), turn[c]);
+  } else if (hold.orientation == Orientation::about_tangent) {
+    const TangentTurn turn = tangent_turn(k.q[i], hold.target.frame);
+    emit(Vec3::Zero(), turn.gradient, turn.angle);
+  }
+}
+
+/// The last frame is the first one seen across the seam, and so are kappa and eta.
+struct Closure {
+  Vec3 gap;
+  Vec3 turn;
+  Vec2 u;
+};
+
+Closure closure(const Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
+  const Quat ghost = geometry::across_seam(ribbon, k.q.front());
+  return {k.r.back() - k.r.front(), math::log_map(k.q.back() * ghost.conjugate()),
+          Vec2(chain.kappa.back() - ribbon.seam_sign() * chain.kappa.front(),
+               chain.eta.back() - ribbon.seam_sign() * chain.eta.front())};
+}
+
+std::size_t hold_rows(const Hold& hold) {
+  std::size_t count = 0;
+  for (const bool held : hold.position) count += held ? 1 : 0;
+  if (hold.orientation == Orientation::full) count += 3;
+  if (hold.orientation == Orientation::about_tangent) count += 1;
+  return count;
+}
+
+Vec3 in_space(const PointLoad& load, const Vec3& vector, const Quat& frame) {
+  return load.frame == LoadFrame::space ? vector : Vec3(frame * vector);
+}
+
+/// Stiffness of the penalty that makes pivots a valid second-order test: far above the strip's own
+/// D w / l^3 (positions) and D w / l (rotations).
+struct Penalty {
+  double position, rotation;
+};
+
+Penalty penalties(const Ribbon& ribbon) {
+  const double position = 1e4 * rigidity(ribbon) / (ribbon.length * ribbon.length * ribbon.length);
+  return {position, position * ribbon.length * ribbon.length / 40};
+}
+
+void append_rows(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                 const std::vector<double>& multipliers, std::vector<ChainRow>& rows) {
+  const Penalty penalty = penalties(ribbon);
+  rows.clear();
+  const auto push = [&](ChainRow row) {
+    row.multiplier = multipliers[rows.size()];
+    rows.push_back(row);
+  };
+  if (problem.closed) {
+    const Closure gap = closure(ribbon, chain, k);
+    // With a floating base the penalty would couple it to the last node; the recursion has no room for that.
+    const bool floating = !problem.base_fixed[0] || !problem.base_fixed[3];
+    for (int c = 0; c < 8; ++c) {
+      ChainRow row;
+      row.node = ribbon.segments;
+      if (c < 3) {
+        row.v = Vec3::Unit(c);
+        row.base_v = -row.v;
+        row.residual = gap.gap[c];
+        row.penalty = floating ? 0 : penalty.position;
+      } else if (c < 6) {
+        row.theta = Vec3::Unit(c - 3);
+        row.base_theta = -row.theta;
+        row.residual = gap.turn[c - 3];
+        row.penalty = floating ? 0 : penalty.rotation;
+      } else {
+        row.u = Vec2::Unit(c - 6);
+        row.first_u = -ribbon.seam_sign() * row.u;
+        row.residual = gap.u[c - 6];
+      }
+      push(row);
+    }
+  }
+  for (const Hold& hold : problem.holds) {
+    for_each_row(hold, k, [&](const Vec3& v, const Vec3& theta, double residual) {
+      ChainRow row;
+      row.node = hold.node;
+      row.v = v;
+      row.theta = theta;
+      row.residual = residual;
+      row.penalty = v.isZero() ? penalty.rotation : penalty.position;
+      push(row);
+    });
+  }
+}
+
+void fill_joint(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t i, ChainLink& link) {
+  const double h = ribbon.hinge_length[i];
+  if (h == 0) {
+    link.axes.setZero();
+    link.axes_01.setZero();
+    link.axes_11.setZero();
+    return;
+  }
+  // Axes are given before the fold; carry them with the frame before it: q_{i-1} = q_i fold^-1.
+  const geometry::FoldDerivatives d = geometry::fold_derivatives(k.fold[i], h, chain.kappa[i], chain.eta[i]);
+  const Mat3 before = i > 0 ? k.frame[i - 1] : Mat3(chain.base.frame.toRotationMatrix());
+  link.axes.col(0) = before * d.kappa;
+  link.axes.col(1) = before * d.eta;
+  link.axes_01 = before * d.kappa_eta;
+  link.axes_11 = before * d.eta_eta;
+}
+
+/// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
+void fix_coordinate(std::vector<ChainLink>& links, std::size_t i, int c) {
+  ChainLink& link = links[i];
+  link.axes.col(c).setZero();
+  if (c == 1) {
+    link.axes_01.setZero();
+    link.axes_11.setZero();
+  }
+  if (i + 1 < links.size()) {
+    link.grad_a[c] = 0;
+    link.hess_aa.row(c).setZero();
+    link.hess_aa.col(c).setZero();
+    link.hess_ab.row(c).setZero();
+    if (i == 0) link.hess_aa(c, c) = 1;
+  }
+  if (i > 0) {
+    ChainLink& before = links[i - 1];
+    before.grad_b[c] = 0;
+    before.hess_bb.row(c).setZero();
+    before.hess_bb.col(c).setZero();
+    before.hess_ab.col(c).setZero();
+    before.hess_bb(c, c) = 1;
+  }
+}
+
+void add_loads(const ChainProblem& problem, const Kinematics& k, ChainSystem& system) {
+  system.pose_terms.clear();
+  for (const PointLoad& load : problem.loads) {
+    const Quat& frame = k.q[static_cast<std::size_t>(load.node)];
+    math::PoseTerm term;
+    term.node = load.node;
+    term.gradient << -in_space(load, load.force, frame), -in_space(load, load.torque, frame);
+    system.pose_terms.push_back(term);
+  }
+}
+
+}  // namespace
+
+std::size_t row_count(const ChainProblem& problem) {
+  std::size_t count = problem.closed ? 8 : 0;
+  for (const Hold& hold : problem.holds) count += hold_rows(hold);
+  return count;
+}
+
+ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                         const Kinematics& reference) {
+  const auto n = static_cast<std::size_t>(ribbon.segments);
+  const double e1 = barrier_weight(ribbon, problem);
+  ObjectiveValue value;
+  double before = bending_at(ribbon, problem, chain, k, 0).value;
+  for (std::size_t s = 0; s < n; ++s) {
+    const double x = 0.5 * ribbon.width * (chain.eta[s + 1] - chain.eta[s]) / ribbon.rest_length[s];
+    const double after = bending_at(ribbon, problem, chain, k, s + 1).value;
+    const double mean = 0.5 * (weight_at(ribbon, s, s) * before * before + weight_at(ribbon, s, s + 1) * after * after);
+    value.elastic += mean * energy::width_factor(problem.model, x).value;
+    value.barrier += e1 * energy::ruling_barrier(x).value;
+    before = after;
+  }
+  for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i]);
+  if (problem.proximity > 0) {
+    for (std::size_t i = 0; i <= n; ++i) {
+      value.rest += 0.5 * problem.proximity * ribbon.hinge_length[i] * (k.r[i] - problem.anchor[i]).squaredNorm();
+    }
+  }
+  for (const PointLoad& load : problem.loads) {
+    const auto i = static_cast<std::size_t>(load.node);
+    const Vec3 turn = math::log_map(k.q[i] * reference.q[i].conjugate());
+    value.rest -= in_space(load, load.force, reference.q[i]).dot(k.r[i]);
+    value.rest -= in_space(load, load.torque, reference.q[i]).dot(turn);
+  }
+  return value;
+}
+
+void constraint_residuals(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                          std::vector<double>& residuals) {
+  residuals.clear();
+  if (problem.closed) {
+    const Closure gap = closure(ribbon, chain, k);
+    residuals.insert(residuals.end(), gap.gap.begin(), gap.gap.end());
+    residuals.insert(residuals.end(), gap.turn.begin(), gap.turn.end());
+    residuals.insert(residuals.end(), gap.u.begin(), gap.u.end());
+  }
+  for (const Hold& hold : problem.holds) {
+    for_each_row(hold, k, [&](const Vec3&, const Vec3&, double residual) { residuals.push_back(residual); });
+  }
+}
+
+void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+               const std::vector<double>& multipliers, ChainSystem& system) {
+  const auto n = static_cast<std::size_t>(ribbon.segments);
+  const double e1 = barrier_weight(ribbon, problem);
+  system.links.resize(n + 1);
+  system.base_fixed = problem.base_fixed;
+  Bending a = bending_at(ribbon, problem, chain, k, 0);
+  for (std::size_t i = 0; i <= n; ++i) {
+    ChainLink& link = system.links[i];
+    fill_joint(ribbon, chain, k, i, link);
+    link.stiffness = problem.proximity * ribbon.hinge_length[i];
+    link.force = -problem.force[i];
+    if (problem.proximity > 0) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
+    if (i == n) break;
+    link.span = ribbon.rest_length[i] * k.frame[i].col(2);
+    const double slope = 0.5 * ribbon.width / ribbon.rest_length[i];
+    const double x = slope * (chain.eta[i + 1] - chain.eta[i]);
+    const Bending b = bending_at(ribbon, problem, chain, k, i + 1);
+    energy::WidthFactor barrier = energy::ruling_barrier(x);
+    barrier.value *= e1;
+    barrier.first *= e1;
+    barrier.second *= e1;
+    const energy::LinkEnergy e = energy::link_energy(energy::width_factor(problem.model, x), barrier, slope,
+                                                     weight_at(ribbon, i, i), a, weight_at(ribbon, i, i + 1), b);
+    link.grad_a = e.grad_a;
+    link.grad_b = e.grad_b;
+    link.hess_aa = e.hess_aa;
+    link.hess_ab = e.hess_ab;
+    link.hess_bb = e.hess_bb;
+    a = b;
+  }
+  for (const std::size_t i : {std::size_t{0}, n}) {
+    if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);
+    if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 1);
+  }
+  append_rows(ribbon, problem, chain, k, multipliers, system.rows);
+  add_loads(problem, k, system);
+}
+
+}  // namespace wunderlich::solver

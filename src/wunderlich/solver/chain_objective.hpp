@@ -1,0 +1,70 @@
+/// The constrained objective of one equilibrium (or one proximal step) in joint coordinates, and its
+/// linearisation for the chain sweep.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "wunderlich/constraint/support.hpp"
+#include "wunderlich/energy/model.hpp"
+#include "wunderlich/geometry/chain.hpp"
+#include "wunderlich/math/chain_sweep.hpp"
+
+namespace wunderlich::solver {
+
+/// A prescribed pose at one load parameter: a support with its target.
+struct Hold {
+  int node = 0;                                        ///< link whose node and frame are held; N: the end frame
+  std::array<bool, 3> position{true, true, true};      ///< world axes
+  constraint::Orientation orientation = constraint::Orientation::full;
+  Pose target;                                         ///< about_tangent: the frame to be transported and turned
+};
+
+/// A force and torque on the pose of one link (N: the end frame).
+struct PointLoad {
+  int node = 0;
+  constraint::LoadFrame frame = constraint::LoadFrame::space;
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+};
+
+/// Everything that is minimised over a chain: elastic energy + barrier - loads + proximal term, subject to the
+/// holds and, for loops, the closure.
+struct ChainProblem {
+  energy::Model model;
+  double barrier = 1e-6;                    ///< e1: e1 D (l/w) sum over segments of -ln(1 - x^2)
+  std::vector<Vec3> force;                  ///< (segments + 1) dead force on each node [N]
+  std::vector<PointLoad> loads;             ///< sorted by decreasing node
+  double proximity = 0;                     ///< (proximity/2) sum of hinge weight |r - anchor|^2 [N/m^2]
+  std::vector<Vec3> anchor;                 ///< (segments + 1), used if proximity > 0
+  std::vector<Hold> holds;                  ///< sorted by decreasing node
+  bool closed = false;                      ///< the loop's closure is a constraint
+  std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
+};
+
+/// Number of constraint rows.
+std::size_t row_count(const ChainProblem& problem);
+
+/// Elastic energy with and without barrier, and everything else that is minimised.
+struct ObjectiveValue {
+  double elastic = 0;
+  double barrier = 0;
+  double rest = 0;                          ///< loads and proximal term
+  double total() const { return elastic + barrier + rest; }
+};
+
+/// `reference`: frames that torques are measured from (a torque has no potential; its work is taken to first
+/// order from the iterate's frames).
+ObjectiveValue objective(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
+                         const geometry::Kinematics& kinematics, const geometry::Kinematics& reference);
+
+/// Residuals of the constraint rows, largest |w eta'/2| < 1 assumed.
+void constraint_residuals(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
+                          const geometry::Kinematics& kinematics, std::vector<double>& residuals);
+
+/// Fills `system` around the chain; `multipliers` are the current ones, one a row.
+void linearise(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
+               const geometry::Kinematics& kinematics, const std::vector<double>& multipliers,
+               math::ChainSystem& system);
+
+}  // namespace wunderlich::solver

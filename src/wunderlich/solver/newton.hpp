@@ -1,0 +1,49 @@
+/// Newton's method with exact second-order checks on a chain problem.
+#pragma once
+
+#include <vector>
+
+#include "wunderlich/solver/chain_objective.hpp"
+
+namespace wunderlich::solver {
+
+struct NewtonOptions {
+  double tolerance = 1e-10;        ///< on the step: fold angles [rad], displacements / length
+  int max_iterations = 300;
+  double max_turn = 0.6;           ///< largest change of a fold angle in one iteration [rad]
+};
+
+enum class NewtonOutcome {
+  converged,
+  iteration_limit,
+  line_search_failed,      ///< no step along the direction lowers the merit
+  singular,                ///< no shift made the reduced Hessian positive
+};
+
+struct NewtonReport {
+  NewtonOutcome outcome = NewtonOutcome::iteration_limit;
+  int iterations = 0;
+  int sweeps = 0;                  ///< linear solves; more than iterations where shifts were needed
+  int evaluations = 0;             ///< objective evaluations in the line search
+  int negative_modes = 0;          ///< of the unshifted reduced Hessian where it stopped
+  double max_residual = 0;         ///< of the constraint rows (m, rad, 1)
+  double last_step = 0;
+  bool converged() const { return outcome == NewtonOutcome::converged; }
+};
+
+/// Buffers of the solve; no allocation once they have their size.
+struct NewtonWorkspace {
+  math::ChainSystem system;
+  math::ChainWorkspace sweep;
+  math::ChainStep step;
+  geometry::Kinematics kinematics, trial_kinematics;
+  geometry::Chain trial;
+  std::vector<double> residuals, trial_residuals;
+};
+
+/// Finds a local minimum of the problem near `chain`, which it updates only if it converges. `multipliers` (one
+/// a row, any start) are updated with it.
+NewtonReport minimise(const geometry::Ribbon& ribbon, const ChainProblem& problem, const NewtonOptions& options,
+                      geometry::Chain& chain, std::vector<double>& multipliers, NewtonWorkspace& work);
+
+}  // namespace wunderlich::solver
