@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Slower checks than ./test has time for, about an hour on two cores:
-#   longer fuzzing, the tests in random order and repeated, the sanitized tests with leak checks of the program,
-#   the core compiled against libc++, and a coverage report in build/coverage/report.
+# Slower checks than ./test has time for, some 90 minutes on two cores: clang-tidy on every source, tests repeated in
+# random order, half an hour of fuzzing, the core compiled against libc++, and coverage (build/coverage/report).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh test
 
 echo "nightly: everything that ./test does"
 ./test
+
+echo "nightly: clang-tidy on everything"
+tools/tidy.sh
 
 echo "nightly: unit tests, 10 times in random order"
 GTEST_SHUFFLE=1 ctest --preset release -j "$(nproc)" --schedule-random --repeat until-fail:10
