@@ -90,6 +90,7 @@ void check(const Ribbon& ribbon, const Any& any, const State& state, const Vecto
   expect_derivative(gradient, hessian * d);
 }
 
+// @eq Shen2015:12, Shen2015:13, Shen2015:14, Shen2015:15, Shen2015:16, Shen2015:18
 TEST(ConstraintDerivatives, OfEveryConstraintOnEveryRibbon) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;

@@ -40,6 +40,7 @@ VectorXd residuals(const Ribbon& ribbon, const Constraint& c, const State& state
   return out;
 }
 
+// @eq Shen2015:12, Shen2015:14, Shen2015:15, Shen2015:16
 TEST(Constraints, AllVanishOnAChainFoldedAlongItsRulings) {
   for (const auto& [name, ribbon] : sample_ribbons()) {
     if (ribbon.is_loop()) continue;
@@ -97,6 +98,7 @@ TEST(Constraints, ErrorsAreDimensionlessAndSeparate) {
   EXPECT_TRUE(std::isnan(constraint::errors(ribbon, state).max_ruling_ratio));
 }
 
+// @eq Shen2015:18
 TEST(Constraints, TangentTurnIsParallelTransport) {
   const Ribbon ribbon = make_ribbon(RibbonSpec{});
   State state = straight_state(ribbon);

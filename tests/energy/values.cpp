@@ -33,6 +33,7 @@ State helix(const Ribbon& ribbon, double kappa, double tau) {
   return state;
 }
 
+// @eq Shen2015:11
 TEST(ElasticEnergy, HelixIsExactForEverySegmentation) {
   RibbonSpec spec;
   spec.length = 1.7;
@@ -82,6 +83,7 @@ TEST(ElasticEnergy, PrintedStrainIsSecondOrderBelowTheRing) {
   }
 }
 
+// @eq Shen2015:3, Shen2015:11
 TEST(ElasticEnergy, VariableRulingMatchesTheIntegralOfTheLogarithm) {
   // kappa constant, eta linear from 0: off the constraints E does not depend on tau = 0, so that V is the integral of
   // ln((1 + x)/(1 - x))/eta' kappa^2 exactly, x being constant.
@@ -97,6 +99,7 @@ TEST(ElasticEnergy, VariableRulingMatchesTheIntegralOfTheLogarithm) {
   EXPECT_NEAR(elastic_value(ribbon, Model{}, state), exact, 1e-14);
 }
 
+// @eq Shen2015:6.2
 TEST(ElasticEnergy, DoesNotDependOnWhereALoopIsCut) {
   std::mt19937 random(4);
   for (const auto& [name, ribbon] : sample_ribbons()) {
@@ -116,6 +119,7 @@ TEST(ElasticEnergy, DoesNotDependOnWhereALoopIsCut) {
   }
 }
 
+// @eq Shen2015:6
 TEST(KineticEnergy, IsThatOfTheWholeMass) {
   for (const auto& [name, ribbon] : sample_ribbons()) {
     SCOPED_TRACE(name);
@@ -127,6 +131,7 @@ TEST(KineticEnergy, IsThatOfTheWholeMass) {
   }
 }
 
+// @eq Shen2015:5.1
 TEST(ParallelCoupling, WeightOfAFlatStripIsTheStudiedOne) {
   // A flat strip with eta = 0: 4.8 D w/l per unit of weight_scale inside, a little less with the ends.
   RibbonSpec spec;

@@ -27,6 +27,7 @@ void series(long double x, long double* out) {
   }
 }
 
+// @eq Shen2015:3
 TEST(WidthFactor, AgreesWithTheSeriesToRounding) {
   for (double x : {1e-9, 1e-3, 0.05, 0.19, 0.1999999, 0.2000001, 0.21, 0.5, 0.9, 0.99, -0.3, -0.95}) {
     SCOPED_TRACE(x);
@@ -55,6 +56,7 @@ TEST(WidthFactor, HoldsCloseToOne) {
   EXPECT_TRUE(std::isinf(energy::ruling_barrier(1).value));
 }
 
+// @eq Shen2015:4
 TEST(WidthFactor, TruncatedSeriesIsThePrintedSum) {
   for (int order : {0, 1, 2, 5, 9}) {
     for (double x : {0.0, 0.4, -1.3}) {
@@ -76,6 +78,7 @@ TEST(WidthFactor, TruncatedSeriesTendsToTheLogarithm) {
   }
 }
 
+// @eq Sadowsky1930
 TEST(WidthFactor, SadowskyIsConstant) {
   const WidthFactor phi = energy::width_factor(Model{Elastic::sadowsky, 5, {}}, 0.7);
   EXPECT_EQ(phi.value, 1);
@@ -98,6 +101,7 @@ TEST(WidthFactor, DerivativesOfEveryKind) {
   check([](double x) { return energy::ruling_barrier(x); });
 }
 
+// @eq Shen2015:13
 TEST(WidthFactor, BarrierIsTheLogarithm) {
   for (double x : {1e-9, 0.3, 0.71, -0.999}) {
     const auto y = static_cast<long double>(x);

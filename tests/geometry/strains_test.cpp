@@ -56,6 +56,7 @@ TEST(Rotation, JacobiansAreTheDerivatives) {
   }
 }
 
+// @eq Shen2015:7
 TEST(Strains, StraightStripAlongX) {
   const Ribbon ribbon = make_ribbon(RibbonSpec{});
   const State state = straight_state(ribbon);
@@ -67,6 +68,7 @@ TEST(Strains, StraightStripAlongX) {
 }
 
 /// kappa = d3'.d1, tau = d1'.d2, gamma = d2'.d3 by differences of the frame vectors themselves.
+// @eq Shen2015:9
 TEST(Strains, AreTheRatesOfTheFrameVectors) {
   const double h = 1e-5;
   const Quat a = math::exp_map(0.8 * kAxis);
@@ -83,6 +85,7 @@ TEST(Strains, AreTheRatesOfTheFrameVectors) {
 }
 
 /// The paper's matrices B_k, applied as printed to the mean and the difference of two quaternions.
+// @eq Shen2015:9, Shen2015:10
 TEST(Strains, PrintedMeasureIsThePrintedFormula) {
   const Quat a = math::exp_map(1.1 * kAxis), b = a * math::exp_map(Vec3(0.3, 0.5, -0.4));
   const double h = 0.13;
@@ -126,6 +129,7 @@ TEST(Strains, RulingRatioIsOnSegments) {
 }
 
 /// Cutting a loop elsewhere must show every strain again, reversed where it is now seen from the other side.
+// @eq Shen2015:6.2
 TEST(Strains, DoNotDependOnWhereALoopIsCut) {
   std::mt19937 random(5);
   for (const auto& [name, ribbon] : sample_ribbons()) {

@@ -24,6 +24,7 @@ TEST(SurfaceArea, OfAStraightStripIsLengthTimesWidth) {
   EXPECT_LE(area_error(ribbon, straight_state(ribbon)), 1e-15);
 }
 
+// @eq Shen2015:6.1
 TEST(SurfaceArea, OfAnyHingedChainIsExact) {
   RibbonSpec spec;
   spec.segments = 40;
@@ -68,6 +69,7 @@ TEST(SurfaceArea, IsTwoTrianglesWhereRulingsMeet) {
   EXPECT_NEAR(surface_area(ribbon, state), 0.2 * l + 2 * bow_tie, 1e-14);
 }
 
+// @eq Shen2015:2
 TEST(SurfaceArea, IsContinuousWhereRulingsBeginToMeet) {
   const Ribbon ribbon = strip(2, 0.2, 0.2);
   State below = straight_state(ribbon), above = below;
@@ -76,6 +78,7 @@ TEST(SurfaceArea, IsContinuousWhereRulingsBeginToMeet) {
   EXPECT_NEAR(surface_area(ribbon, below), surface_area(ribbon, above), 1e-9);
 }
 
+// @eq Shen2015:1, Shen2015:6.1
 TEST(RenderMesh, PassesThroughTheNodesAndKeepsTheRulings) {
   const Ribbon ribbon = strip(12);
   const auto [kappa, eta] = random_strains(ribbon, 0.5, 3);
@@ -141,6 +144,7 @@ TEST(RenderMesh, FieldsFollowTheNodesLinearly) {
 }
 
 /// A Moebius-like loop: the surface must meet itself across the seam, turned over, and not be welded there.
+// @eq Shen2015:6.2
 TEST(RenderMesh, ClosesAcrossTheSeamOfAMoebiusStrip) {
   RibbonSpec spec;
   spec.segments = 60;

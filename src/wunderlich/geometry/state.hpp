@@ -35,7 +35,7 @@ struct Strains {
   std::vector<double> kappa;         ///< (segments + 1) curvature [1/m]
   std::vector<double> tau;           ///< (segments + 1) torsion [1/m]
   std::vector<double> eta_prime;     ///< (segments) [1/m]
-  std::vector<double> ruling_ratio;  ///< (segments) x = w eta'/2
+  std::vector<double> ruling_ratio;  ///< (segments) x = w eta'/2; rulings meet from 1 on   @eq Shen2015:2
 };
 
 /// (gamma, kappa, tau) of two neighbouring frames, body components of the Darboux vector [1/m].

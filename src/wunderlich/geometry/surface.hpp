@@ -15,8 +15,9 @@ double surface_area(const Ribbon& ribbon, const State& state);
 /// |area - length * width| / (length * width)
 double area_error(const Ribbon& ribbon, const State& state);
 
-/// The mesh of §6.1: cubic spline through the centerline, linear eta and frame; `subdivision` strips a segment
-/// along the length, `across` quads over the width. Connectivity depends on these numbers only.
+/// The mesh of §6.1, points r + v ruling (@eq Shen2015:1): cubic spline through the centerline, linear eta and frame;
+/// `subdivision` strips a segment along the length, `across` quads over the width. Connectivity depends on these
+/// numbers only.
 Mesh render_mesh(const Ribbon& ribbon, const State& state, int subdivision, int across);
 
 /// Nodes with mean frames and strains, as in `centerline.csv`.
