@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "commands.hpp"
+#include "wunderlich/scene/read.hpp"
+#include "wunderlich/scene/schema.hpp"
+
+namespace wunderlich::app {
+
+int check_command(const std::string& scene_name, const std::vector<std::string>& set) {
+  const scene::Scene scene = scene::read_scene(scene_name, set);
+  const bool loop = scene.ribbon.closure == geometry::Closure::loop;
+  std::cout << fmt::format("{}: ok: {}, {} segments, l/w = {:g}, {} supports, {} loads\n", scene.name,
+                           loop ? "a loop" : "an open strip", scene.ribbon.segments,
+                           scene.ribbon.length / scene.ribbon.width, scene.surroundings.supports.size(),
+                           scene.surroundings.loads.size());
+  return done;
+}
+
+int scenes_command() {
+  std::size_t widest = 0;
+  for (const auto& shipped : scene::shipped_scenes()) widest = std::max(widest, shipped.name.size());
+  for (const auto& shipped : scene::shipped_scenes()) {
+    std::cout << fmt::format("{:{}}  {}\n", shipped.name, widest, scene::read_scene(shipped.name).title);
+  }
+  return done;
+}
+
+int schema_command() {
+  std::cout << scene::schema_markdown();
+  return done;
+}
+
+}  // namespace wunderlich::app

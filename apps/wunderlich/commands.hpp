@@ -1,0 +1,38 @@
+/// The commands of the program. Each returns the exit code; bad input is an InputError, which `main` reports.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace wunderlich::app {
+
+enum ExitCode { done = 0, bad_input = 2, not_converged = 3, interrupted = 130 };
+
+struct RunArguments {
+  std::string scene;
+  std::string out;  ///< empty: out/<scene>
+  std::vector<std::string> set;
+  std::string formats;  ///< empty: those of the scene
+  bool resume = false;
+  bool quiet = false;
+};
+
+int run_command(const RunArguments& arguments);
+
+int check_command(const std::string& scene, const std::vector<std::string>& set);
+
+/// The shipped scenes, a line each.
+int scenes_command();
+
+/// docs/scene-format.md
+int schema_command();
+
+struct ExportArguments {
+  std::string run;  ///< a run folder
+  std::string format;
+  std::string out;  ///< empty: in the run folder, under the name `run` would give it
+};
+
+int export_command(const ExportArguments& arguments);
+
+}  // namespace wunderlich::app

@@ -1,0 +1,34 @@
+#include <filesystem>
+#include <iostream>
+
+#include "commands.hpp"
+#include "stored_run.hpp"
+#include "wunderlich/base/error.hpp"
+#include "wunderlich/io/file.hpp"
+#include "wunderlich/io/run_folder.hpp"
+#include "wunderlich/io/summary_json.hpp"
+
+namespace wunderlich::app {
+
+int export_command(const ExportArguments& arguments) {
+  const io::Format format = io::parse_format(arguments.format);
+  const std::filesystem::path folder = arguments.run;
+  const StoredRun run = load_run(folder);
+  const std::filesystem::path summary = folder / io::summary_file;
+  const io::RunOutput output = output_of(run, io::parse_summary(io::read_file(summary), summary.string()));
+  if (!arguments.out.empty()) {
+    io::write_format(arguments.out, format, output);
+    std::cout << arguments.out << "\n";
+    return done;
+  }
+  for (const auto& [name, bytes] : io::render(format, output)) {
+    const std::filesystem::path file = folder / name;
+    std::filesystem::create_directories(file.parent_path());
+    io::write_file(file, bytes);
+    // One line a format, not one a frame.
+    if (file.parent_path() == folder) std::cout << file.string() << "\n";
+  }
+  return done;
+}
+
+}  // namespace wunderlich::app

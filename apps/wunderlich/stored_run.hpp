@@ -1,0 +1,31 @@
+/// A run as it is kept: the scene and the recorded states in a checkpoint, and what exporters make of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "wunderlich/io/checkpoint.hpp"
+#include "wunderlich/io/run_output.hpp"
+#include "wunderlich/scene/run.hpp"
+
+namespace wunderlich::app {
+
+/// What a checkpoint holds.
+struct StoredRun {
+  scene::Scene scene;
+  scene::Progress progress;
+  scene::Outcome outcome = scene::Outcome::not_converged;
+};
+
+io::Checkpoint to_checkpoint(const StoredRun& run);
+
+/// Throws InputError that begins with `origin` if the checkpoint does not fit together.
+StoredRun from_checkpoint(const io::Checkpoint& checkpoint, const std::string& origin);
+
+/// The run kept in a run folder. Throws InputError if the folder is none.
+StoredRun load_run(const std::filesystem::path& folder);
+
+/// Everything that the run folder and the exports are made from.
+io::RunOutput output_of(const StoredRun& run, const Summary& summary);
+
+}  // namespace wunderlich::app
