@@ -11,15 +11,15 @@ namespace wunderlich {
 
 /// One node of the centerline with its mean material frame and strains.
 struct CenterlineSample {
-  double u = 0;                        ///< arc length from the start [m]
-  Vec3 r = Vec3::Zero();               ///< position [m]
-  Vec3 d1 = Vec3::Zero();              ///< surface normal on the centerline
-  Vec3 d2 = Vec3::Zero();              ///< binormal, across the strip
-  Vec3 d3 = Vec3::Zero();              ///< tangent
-  double kappa = 0;                    ///< curvature [1/m]
-  double tau = 0;                      ///< torsion [1/m]
-  double eta = 0;                      ///< ruling slope, ruling = d2 + eta d3
-  double eta_prime = 0;                ///< d eta / du [1/m]
+  double u = 0;            ///< arc length from the start [m]
+  Vec3 r = Vec3::Zero();   ///< position [m]
+  Vec3 d1 = Vec3::Zero();  ///< surface normal on the centerline
+  Vec3 d2 = Vec3::Zero();  ///< binormal, across the strip
+  Vec3 d3 = Vec3::Zero();  ///< tangent
+  double kappa = 0;        ///< curvature [1/m]
+  double tau = 0;          ///< torsion [1/m]
+  double eta = 0;          ///< ruling slope, ruling = d2 + eta d3
+  double eta_prime = 0;    ///< d eta / du [1/m]
 };
 
 /// A named scalar per mesh point.
@@ -31,25 +31,25 @@ struct PointField {
 
 /// A triangle mesh with point data.
 struct Mesh {
-  std::vector<Vec3> points;                    ///< [m]
-  std::vector<Vec3> normals;                   ///< unit, one a point
-  std::vector<std::array<int, 3>> triangles;   ///< point indices
+  std::vector<Vec3> points;                   ///< [m]
+  std::vector<Vec3> normals;                  ///< unit, one a point
+  std::vector<std::array<int, 3>> triangles;  ///< point indices
   std::vector<PointField> fields;
 };
 
 /// One instant: the centerline for tables and plots, the surface for pictures.
 struct Frame {
-  double time = 0;                             ///< [s]; the load parameter of an equilibrium path
-  std::vector<CenterlineSample> centerline;    ///< segments + 1 samples
-  Mesh surface;                                ///< same connectivity in every frame of a run
+  double time = 0;                           ///< [s]; the load parameter of an equilibrium path
+  std::vector<CenterlineSample> centerline;  ///< segments + 1 samples
+  Mesh surface;                              ///< same connectivity in every frame of a run
 };
 
 /// The strip unrolled flat: x along the strip, y across it.
 struct FlatPattern {
-  double length = 0;                                  ///< [m]
-  double width = 0;                                   ///< [m]
-  std::vector<std::array<Eigen::Vector2d, 2>> rulings;///< end points of each node's ruling [m]
-  std::vector<double> fold_angle;                     ///< signed turn about each ruling [rad]
+  double length = 0;                                    ///< [m]
+  double width = 0;                                     ///< [m]
+  std::vector<std::array<Eigen::Vector2d, 2>> rulings;  ///< end points of each node's ruling [m]
+  std::vector<double> fold_angle;                       ///< signed turn about each ruling [rad]
 };
 
 }  // namespace wunderlich

@@ -10,10 +10,10 @@
 namespace wunderlich {
 
 struct Energies {
-  double elastic = 0;      ///< [J]
-  double kinetic = 0;      ///< [J]
-  double gravity = 0;      ///< [J]
-  double normalized = 0;   ///< elastic * length / (bending_stiffness * width)
+  double elastic = 0;     ///< [J]
+  double kinetic = 0;     ///< [J]
+  double gravity = 0;     ///< [J]
+  double normalized = 0;  ///< elastic * length / (bending_stiffness * width)
   double total() const { return elastic + kinetic + gravity; }
 };
 
@@ -23,32 +23,32 @@ struct ConstraintErrors {
   double max_parallel_error = 0;
   double max_binormal = 0;
   double max_torsion_mismatch = 0;
-  double max_ruling_ratio = 0;     ///< max |w eta'/2|, below 1 while rulings do not meet
+  double max_ruling_ratio = 0;  ///< max |w eta'/2|, below 1 while rulings do not meet
 };
 
 /// What a support exerts on the strip at one end, world axes.
 struct Reaction {
-  Vec3 force = Vec3::Zero();       ///< [N]
-  Vec3 torque = Vec3::Zero();      ///< about the end node [N m]
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 torque = Vec3::Zero();  ///< about the end node [N m]
 };
 
 struct Topology {
-  double twist = 0;                ///< turns of d1 about the tangent, positive right-handed
-  double writhe = 0;               ///< of the closed centerline; for an open strip of the arc itself
-  double link = 0;                 ///< twist + writhe
+  double twist = 0;   ///< turns of d1 about the tangent, positive right-handed
+  double writhe = 0;  ///< of the closed centerline; for an open strip of the arc itself
+  double link = 0;    ///< twist + writhe
 };
 
 struct Stability {
   bool stable = false;
-  int negative_modes = 0;          ///< negative eigenvalues of the reduced Hessian
+  int negative_modes = 0;  ///< negative eigenvalues of the reduced Hessian
 };
 
 struct Timing {
-  double wall_seconds = 0;         ///< solver only, without output
+  double wall_seconds = 0;  ///< solver only, without output
   double step_us_median = 0;
   double step_us_p95 = 0;
   double iterations_mean = 0;
-  std::vector<std::pair<std::string, double>> phases;   ///< seconds by phase of the path
+  std::vector<std::pair<std::string, double>> phases;  ///< seconds by phase of the path
 };
 
 /// One recorded step.
@@ -66,7 +66,7 @@ struct Summary {
   std::string model = "ribbon";
   std::string method;
   bool converged = false;
-  std::string failure;             ///< why it did not converge; empty when it did
+  std::string failure;  ///< why it did not converge; empty when it did
   int segments = 0;
   double time = 0;
   int steps = 0;
@@ -74,11 +74,11 @@ struct Summary {
   ConstraintErrors constraints;
   double area_error = 0;
   Timing timing;
-  std::optional<double> closure_error;     ///< loops: relative to the length
-  std::vector<Reaction> ends;              ///< start, end; empty for loops
-  std::optional<Stability> stability;      ///< equilibria
+  std::optional<double> closure_error;  ///< loops: relative to the length
+  std::vector<Reaction> ends;           ///< start, end; empty for loops
+  std::optional<Stability> stability;   ///< equilibria
   Topology topology;
-  std::vector<double> kappa_zeros;         ///< u / length
+  std::vector<double> kappa_zeros;  ///< u / length
   std::vector<std::string> warnings;
 };
 

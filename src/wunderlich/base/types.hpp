@@ -19,8 +19,8 @@ using Quat = Eigen::Quaterniond;
 
 /// A position with a material frame: what a clamp prescribes.
 struct Pose {
-  Vec3 position = Vec3::Zero();      ///< [m]
-  Quat frame = Quat::Identity();     ///< columns d1, d2, d3
+  Vec3 position = Vec3::Zero();   ///< [m]
+  Quat frame = Quat::Identity();  ///< columns d1, d2, d3
 };
 
 }  // namespace wunderlich

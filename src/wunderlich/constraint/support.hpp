@@ -11,9 +11,9 @@ namespace wunderlich::constraint {
 /// One key of a prescribed motion. `turn` is a further rotation about d3 that may exceed a full turn,
 /// which a frame alone cannot say.
 struct PoseKey {
-  double time = 0;                   ///< [s]; the load parameter of an equilibrium path
+  double time = 0;  ///< [s]; the load parameter of an equilibrium path
   Pose pose;
-  double turn = 0;                   ///< about d3, right-handed [rad]
+  double turn = 0;  ///< about d3, right-handed [rad]
 };
 
 /// Keys in increasing time; constant before the first and after the last, in between positions and turns
@@ -36,9 +36,9 @@ enum class Orientation {
 /// frame is held (half-cell hinge); anywhere else the frame is that of the segment and the position that of
 /// its first node.
 struct Support {
-  int node = 0;                                   ///< node whose position is held; for a segment its first node
-  int segment = -1;                               ///< segment whose frame is held, -1: the end node's own frame
-  std::array<bool, 3> hold_position{true, true, true};   ///< world x, y, z
+  int node = 0;                                         ///< node whose position is held; for a segment its first node
+  int segment = -1;                                     ///< segment whose frame is held, -1: the end node's own frame
+  std::array<bool, 3> hold_position{true, true, true};  ///< world x, y, z
   Orientation orientation = Orientation::full;
   Motion motion;
 };
@@ -48,8 +48,8 @@ enum class LoadFrame { space, material };
 
 struct LoadKey {
   double time = 0;
-  Vec3 force = Vec3::Zero();         ///< [N]
-  Vec3 torque = Vec3::Zero();        ///< [N m]
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 torque = Vec3::Zero();  ///< [N m]
 };
 
 /// A force and torque at a node, linear in time between keys.
@@ -65,7 +65,7 @@ LoadKey load_at(const Load& load, double time);
 struct Surroundings {
   std::vector<Support> supports;
   std::vector<Load> loads;
-  Vec3 gravity = Vec3::Zero();       ///< [m/s^2]
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
 };
 
 }  // namespace wunderlich::constraint

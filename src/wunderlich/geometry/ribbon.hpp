@@ -15,16 +15,16 @@ namespace wunderlich::geometry {
 enum class Closure { open, loop };
 
 struct RibbonSpec {
-  double length = 1;                 ///< [m]
-  double width = 0.1;                ///< full width [m]
+  double length = 1;   ///< [m]
+  double width = 0.1;  ///< full width [m]
   int segments = 50;
-  double bending_stiffness = 1;      ///< D [N m]
-  double area_density = 1;           ///< rho [kg/m^2]
+  double bending_stiffness = 1;  ///< D [N m]
+  double area_density = 1;       ///< rho [kg/m^2]
   Closure closure = Closure::open;
-  int half_twists = 0;               ///< loops: turns of pi of the frame about +d3 as u grows
-  std::array<bool, 2> clamped{};     ///< open strips: does the start, the end carry a prescribed frame
-  bool free_rulings = false;         ///< open strips: leave eta free at the ends instead of 0
-  std::vector<double> spacing;       ///< relative segment lengths; empty means uniform
+  int half_twists = 0;            ///< loops: turns of pi of the frame about +d3 as u grows
+  std::array<bool, 2> clamped{};  ///< open strips: does the start, the end carry a prescribed frame
+  bool free_rulings = false;      ///< open strips: leave eta free at the ends instead of 0
+  std::vector<double> spacing;    ///< relative segment lengths; empty means uniform
 };
 
 /// The discrete ribbon: constant through a run.
