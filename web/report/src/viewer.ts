@@ -113,13 +113,27 @@ function keyLight(): THREE.DirectionalLight {
   return light;
 }
 
-export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => void): Viewer {
+function createRenderer(host: HTMLElement): THREE.WebGLRenderer {
   const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: false });
   renderer.toneMapping = THREE.NeutralToneMapping;
   renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
   host.append(renderer.domElement);
+  return renderer;
+}
+
+function createControls(camera: THREE.Camera, element: HTMLElement): OrbitControls {
+  const controls = new OrbitControls(camera, element);
+  controls.enableDamping = true;
+  controls.dampingFactor = 0.12;
+  controls.minDistance = 0.3;
+  controls.maxDistance = 14;
+  return controls;
+}
+
+export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => void): Viewer {
+  const renderer = createRenderer(host);
 
   const scene = new THREE.Scene();
   const environment = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment(), 0.04).texture;
@@ -154,11 +168,7 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
 
   const camera = new THREE.PerspectiveCamera(32, 1, 0.05, 50);
   camera.up.set(0, 0, 1);
-  const controls = new OrbitControls(camera, renderer.domElement);
-  controls.enableDamping = true;
-  controls.dampingFactor = 0.12;
-  controls.minDistance = 0.3;
-  controls.maxDistance = 14;
+  const controls = createControls(camera, renderer.domElement);
   controls.addEventListener('start', onFirstDrag);
 
   const fits = fitsOf(run.frames);
