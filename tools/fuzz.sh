@@ -8,4 +8,5 @@ cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --target fuzz_scene
 mkdir -p build/fuzz/corpus
 build/fuzz/fuzz_scene -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
-  -artifact_prefix=build/fuzz/ build/fuzz/corpus scenes tests/scene/crashers
+  -dict=tests/fuzz/scene.dict \
+  -artifact_prefix=build/fuzz/ build/fuzz/corpus scenes tests/fuzz/seeds tests/scene/crashers

@@ -188,6 +188,7 @@ void check_cell(const Cell& cell) {
 }
 
 std::string range(const Key& key) {
+  if (key.type == Type::integer) return fmt::format("from {:.0f} to {:.0f}", key.low, key.high);
   return fmt::format("from {:g} to {:g}{}", key.low, key.high, key.unit.empty() ? "" : " " + key.unit);
 }
 
