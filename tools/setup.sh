@@ -20,7 +20,7 @@ libbenchmark-dev    libbenchmark-dev    run
 node                nodejs              run
 npm                 npm                 run
 ca-certificates.crt ca-certificates     run
-python3             python3             test
+python3             python3             run
 clang++             clang               test
 libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
