@@ -262,7 +262,7 @@ const std::vector<Key> table = {
      "",
      0,
      1,
-     "1e-6",
+     "1e-9",
      {},
      "Weight e1 of the final barrier e1 D (l/w) sum -ln(1 - x^2) that keeps rulings from meeting."},
 
