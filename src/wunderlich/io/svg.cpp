@@ -80,8 +80,7 @@ std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
   for (const double angle : pattern.fold_angle) largest = std::max(largest, std::abs(angle));
   const Box box = bounds(pattern);
   const double margin = 5;                                                    // mm
-  const double letter = std::clamp(0.02 * (box.right - box.left), 2.5, 60.);  // mm
-  const double stroke = letter / 12;
+  const double letter = std::clamp(0.01 * (box.right - box.left), 2.5, 60.);  // mm
   const double left = box.left - margin, top = box.top - margin;
   const double width = box.right - box.left + 2 * margin;
   const double height = box.bottom - box.top + 2 * margin + 2 * letter;
@@ -89,11 +88,12 @@ std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2:.4f}mm\" height=\"{3:.4f}mm\" "
       "viewBox=\"{0:.4f} {1:.4f} {2:.4f} {3:.4f}\">\n<title>{4}</title>\n",
       left, top, width, height, escaped(title));
+  // Lines one pixel wide at any zoom (a quarter of a millimetre on paper): a strip may be 6 mm long or 6 m.
   out += fmt::format(
-      "<style>#cut{{fill:none;stroke:#000;stroke-width:{0:.3f}}} #valley,#mountain{{fill:none;stroke-width:{0:.3f}}}"
-      " #valley{{stroke:#1257c2;stroke-dasharray:{1:.3f} {0:.3f}}} #mountain{{stroke:#c8321e;stroke-dasharray:"
-      "{1:.3f} {0:.3f} {0:.3f} {0:.3f}}} #legend{{font:{2:.3f}px sans-serif;fill:#444}}</style>\n",
-      stroke, 4 * stroke, letter);
+      "<style>#cut,#valley,#mountain{{fill:none;stroke:#000;stroke-width:1px}} "
+      "#cut *,#valley *,#mountain *{{vector-effect:non-scaling-stroke}} #valley{{stroke:#1257c2;stroke-dasharray:6 3}} "
+      "#mountain{{stroke:#c8321e;stroke-dasharray:6 2 1 2}} #legend{{font:{:.3f}px sans-serif;fill:#444}}</style>\n",
+      letter);
   out += "<g id=\"valley\">\n" + folds(pattern, 1, largest) + "</g>\n";
   out += "<g id=\"mountain\">\n" + folds(pattern, -1, largest) + "</g>\n";
   out += fmt::format("<g id=\"cut\"><polygon points=\"{}\"/></g>\n", outline(pattern));
