@@ -111,7 +111,8 @@ def check_scenes_listed(root):
     """Every shipped scene stands in the README, and every scene in its table is shipped."""
     readme = (root / "README.md").read_text(encoding="utf-8")
     shipped = {path.stem for path in (root / "scenes").glob("*.yaml")}
-    listed = set(re.findall(r"^\| `([\w-]+)` \|", readme, re.M))
+    table = re.search(r"^## Scenes$(.*?)(?=^## |\Z)", readme, re.M | re.S)
+    listed = set(re.findall(r"^\| `([\w-]+)` \|", table.group(1), re.M)) if table else set()
     yield from (f"README.md:1: scene '{name}' is shipped but not in the table" for name in sorted(shipped - listed))
     yield from (f"README.md:1: scene '{name}' is in the table but not shipped" for name in sorted(listed - shipped))
 
@@ -127,20 +128,20 @@ def check(root, program=None):
 
 
 CLEAN_TREE = {
-    "README.md": "# A b\n[x](docs/a.md#c-d) [y](#a-b) [z](https://example.org/q)\n| `one` | a scene |\n```sh\n./run\n```\n",
+    "README.md": "# A b\n[x](docs/a.md#c-d) [y](#a-b) [z](https://example.org/q)\n## Scenes\n| `one` | a scene |\n```sh\n./run\n```\n## Files\n| `file` | x |\n",
     "docs/a.md": "## C, d\n",
     "scenes/one.yaml": "",
     "run": "",
 }
 PLANTED = [
-    ("README.md", "[x](docs/b.md)\n| `one` |\n", "README.md:1: link to docs/b.md"),
+    ("README.md", "[x](docs/b.md)\n## Scenes\n| `one` |\n", "README.md:1: link to docs/b.md"),
     ("docs/a.md", "## E\n", "no heading 'c-d'"),
     ("docs/a.md", "## C, d\n```sh\ncmake --preset nix\n```\n", "docs/a.md:3: cmake --preset nix: no preset 'nix'"),
     ("docs/a.md", "## C, d\n```sh\ntools/nix.sh\n```\n", "no script tools/nix.sh"),
     ("docs/a.md", "## C, d\n```sh\nbuild/release/wunderlich x\n```\n", "exit code 1"),
     ("docs/a.md", "## C, d\n```yaml\nribbon: 1\n```\n", "not a valid scene"),
     ("scenes/two.yaml", "", "scene 'two' is shipped but not in the table"),
-    ("README.md", "[x](docs/a.md)\n| `one` |\n| `six` | ?\n", "scene 'six' is in the table but not shipped"),
+    ("README.md", "## Scenes\n| `one` |\n| `six` | ?\n", "scene 'six' is in the table but not shipped"),
 ]
 
 
