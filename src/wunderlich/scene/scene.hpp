@@ -8,17 +8,13 @@
 #include "wunderlich/constraint/support.hpp"
 #include "wunderlich/energy/model.hpp"
 #include "wunderlich/geometry/ribbon.hpp"
+#include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
 
 enum class Method { equilibrium };
 
-/// How an equilibrium path of a closed loop starts.
-enum class LoopPath {
-  automatic,     ///< planar for two half twists, else twist
-  twist,         ///< bend to a ring, turn one end, close
-  planar,        ///< kappa = A cos(2 pi u / l), A from 0 to 15.1 / l: the figure-eight, without contact
-};
+using solver::LoopPath;
 
 struct SolverOptions {
   Method method = Method::equilibrium;
@@ -28,7 +24,7 @@ struct SolverOptions {
   int steps = 0;                   ///< load steps of the path; 0: as few as it takes
   double tolerance = 1e-10;        ///< on the Newton step: rotation [rad] and displacement / length
   int max_iterations = 2000;       ///< Newton iterations for the whole path
-  double barrier = 1e-6;           ///< e1 of the final ruling barrier e1 D (l/w) sum -ln(1 - x^2)
+  double barrier = 1e-9;           ///< e1 of the final ruling barrier e1 D (l/w) sum -ln(1 - x^2)
 };
 
 struct OutputOptions {

@@ -10,7 +10,6 @@ namespace wunderlich::solver {
 
 using constraint::LoadFrame;
 using constraint::Orientation;
-using energy::Bending;
 using geometry::Chain;
 using geometry::Kinematics;
 using geometry::Ribbon;
@@ -26,15 +25,19 @@ double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem) {
   return problem.barrier * ribbon.bending_stiffness * ribbon.length / ribbon.width;
 }
 
-Bending bending_at(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                   std::size_t i) {
-  return energy::bending(problem.model.strain, geometry::fold_length(ribbon, i), chain.kappa[i], chain.eta[i],
-                         k.fold[i]);
+energy::LinkEnd link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                         std::size_t link, std::size_t node) {
+  const double h = geometry::fold_length(ribbon, node), kappa = chain.kappa[node], eta = chain.eta[node];
+  // Half the link belongs to each end's hinge, nothing where there is none.
+  const double weight = h > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
+  return {kappa, eta, energy::bending(problem.model.strain, h, kappa, eta, k.fold[node]), weight};
 }
 
-/// D w times the length of the hinge at `node` that lies in `link`: half the link, none where there is no hinge.
-double weight_at(const Ribbon& ribbon, std::size_t link, std::size_t node) {
-  return geometry::fold_length(ribbon, node) > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
+/// The correction supposes a full hinge at both ends of the link; the printed measure keeps the printed sum.
+const energy::LinkQuadrature& quadrature(const Ribbon& ribbon, const ChainProblem& problem, std::size_t link) {
+  const bool at_end = link == 0 || link + 1 == ribbon.rest_length.size();
+  const bool plain = problem.model.strain == energy::StrainMeasure::printed || (at_end && !ribbon.is_loop());
+  return plain ? energy::kPlainQuadrature : energy::kCorrectedQuadrature;
 }
 
 /// Turn of the frame `q` about its tangent against `reference` transported along the shortest rotation of the
@@ -218,14 +221,12 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
   const auto n = static_cast<std::size_t>(ribbon.segments);
   const double e1 = barrier_weight(ribbon, problem);
   ObjectiveValue value;
-  double before = bending_at(ribbon, problem, chain, k, 0).value;
   for (std::size_t s = 0; s < n; ++s) {
     const double x = 0.5 * ribbon.width * (chain.eta[s + 1] - chain.eta[s]) / ribbon.rest_length[s];
-    const double after = bending_at(ribbon, problem, chain, k, s + 1).value;
-    const double mean = 0.5 * (weight_at(ribbon, s, s) * before * before + weight_at(ribbon, s, s + 1) * after * after);
-    value.elastic += mean * energy::width_factor(problem.model, x).value;
+    const double bent = energy::link_bending(quadrature(ribbon, problem, s), link_end(ribbon, problem, chain, k, s, s),
+                                             link_end(ribbon, problem, chain, k, s, s + 1));
+    value.elastic += bent * energy::width_factor(problem.model, x).value;
     value.barrier += e1 * energy::ruling_barrier(x).value;
-    before = after;
   }
   for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i]);
   if (problem.proximity > 0) {
@@ -262,7 +263,6 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   const double e1 = barrier_weight(ribbon, problem);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
-  Bending a = bending_at(ribbon, problem, chain, k, 0);
   for (std::size_t i = 0; i <= n; ++i) {
     ChainLink& link = system.links[i];
     fill_joint(ribbon, chain, k, i, link);
@@ -273,19 +273,18 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
     link.span = ribbon.rest_length[i] * k.frame[i].col(2);
     const double slope = 0.5 * ribbon.width / ribbon.rest_length[i];
     const double x = slope * (chain.eta[i + 1] - chain.eta[i]);
-    const Bending b = bending_at(ribbon, problem, chain, k, i + 1);
     energy::WidthFactor barrier = energy::ruling_barrier(x);
     barrier.value *= e1;
     barrier.first *= e1;
     barrier.second *= e1;
-    const energy::LinkEnergy e = energy::link_energy(energy::width_factor(problem.model, x), barrier, slope,
-                                                     weight_at(ribbon, i, i), a, weight_at(ribbon, i, i + 1), b);
+    const energy::LinkEnergy e = energy::link_energy(
+        energy::width_factor(problem.model, x), barrier, slope, quadrature(ribbon, problem, i),
+        link_end(ribbon, problem, chain, k, i, i), link_end(ribbon, problem, chain, k, i, i + 1));
     link.grad_a = e.grad_a;
     link.grad_b = e.grad_b;
     link.hess_aa = e.hess_aa;
     link.hess_ab = e.hess_ab;
     link.hess_bb = e.hess_bb;
-    a = b;
   }
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);

@@ -15,6 +15,8 @@ namespace {
 
 /// How far |x| may move towards 1 in one step, as a share of the way.
 constexpr double kBoundaryFraction = 0.9;
+constexpr double kKick = 0.05;   // largest fold-angle change that leaves a saddle [rad]
+constexpr double kSaddleStep = 1e-7;
 constexpr double kSmallestShift = 1e-9, kLargestShift = 1e6, kShiftFactor = 5;
 
 struct Iterate {
@@ -121,6 +123,42 @@ bool line_search(const Iterate& at, const Chain& chain, double limit, NewtonRepo
   return false;
 }
 
+/// Pushes the iterate off a stationary point that is no minimum, along the softest direction of the shifted
+/// Hessian (inverse iteration from a fixed seed), downhill by the sign of the gradient left over.
+bool leave_saddle(const Iterate& at, Chain& current) {
+  NewtonWorkspace& work = at.work;
+  const std::size_t count = work.system.links.size();
+  unsigned seed = 1;
+  const auto noise = [&] { return static_cast<double>(seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };
+  for (auto& row : work.system.rows) row.residual = 0;
+  for (int pass = 0; pass < 4; ++pass) {
+    for (std::size_t i = 0; i < count; ++i) {
+      auto& link = work.system.links[i];
+      link.force.setZero();
+      link.grad_b.setZero();
+      link.grad_a = pass == 0 ? Vec2(noise(), noise()) : Vec2(work.step.u[i]);
+      if (!geometry::kappa_is_free(at.ribbon, static_cast<int>(i))) link.grad_a[0] = 0;
+      if (!geometry::eta_is_free(at.ribbon, static_cast<int>(i))) link.grad_a[1] = 0;
+    }
+    work.system.pose_terms.clear();
+    if (!math::chain_step(work.system, work.sweep, work.step)) return false;
+    double largest = 0;
+    for (const Vec2& u : work.step.u) largest = std::max(largest, u.lpNorm<Eigen::Infinity>());
+    if (!(largest > 0)) return false;
+    for (Vec2& u : work.step.u) u /= largest;
+    work.step.base /= largest;
+  }
+  double turn = 1e-12;
+  for (std::size_t i = 0; i < count; ++i) turn = std::max(turn, (work.system.links[i].axes * work.step.u[i]).norm());
+  NewtonOptions small;
+  small.max_turn = kKick;
+  const double scale = std::min(kKick / turn, step_limit(at.ribbon, small, current, work));
+  apply_step(current, work.step, scale, work.trial);
+  std::swap(current, work.trial);
+  geometry::forward_kinematics(at.ribbon, current, work.kinematics);
+  return true;
+}
+
 }  // namespace
 
 NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const NewtonOptions& options, Chain& chain,
@@ -140,6 +178,10 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     }
     const double limit = step_limit(ribbon, options, current, work);
     report.last_step = step_size(ribbon, work);
+    if (shift > 0 && report.last_step < kSaddleStep && report.kicks < 20 && leave_saddle(at, current)) {
+      ++report.kicks;
+      continue;
+    }
     if (!line_search(at, current, limit, report)) {
       report.outcome = NewtonOutcome::line_search_failed;
       return report;

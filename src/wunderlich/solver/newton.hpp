@@ -25,6 +25,7 @@ struct NewtonReport {
   int iterations = 0;
   int sweeps = 0;                  ///< linear solves; more than iterations where shifts were needed
   int evaluations = 0;             ///< objective evaluations in the line search
+  int kicks = 0;                   ///< times it left a stationary point that was no minimum
   int negative_modes = 0;          ///< of the unshifted reduced Hessian where it stopped
   double max_residual = 0;         ///< of the constraint rows (m, rad, 1)
   double last_step = 0;

@@ -1,0 +1,126 @@
+#include "wunderlich/solver/load_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::solver {
+
+using constraint::Orientation;
+using constraint::Support;
+using geometry::Chain;
+using geometry::Ribbon;
+
+namespace {
+
+bool is_base(const Ribbon& ribbon, const Support& support) {
+  return !ribbon.is_loop() && support.node == 0 && support.orientation != Orientation::about_tangent &&
+         (support.segment < 0 || support.orientation == Orientation::free);
+}
+
+/// A support's pose at path parameter t; during the approach on the way from the strip's own pose to that at time 0.
+Pose pose_of(const PathProblem& path, const PathState& state, std::size_t index, double t) {
+  const constraint::Motion& motion = path.surroundings.supports[index].motion;
+  if (state.phase != Phase::approach) return constraint::pose_at(motion, t);
+  const Pose goal = constraint::pose_at(motion, 0);
+  const Pose& origin = state.origin[index];
+  return {origin.position + t * (goal.position - origin.position), origin.frame.slerp(t, goal.frame)};
+}
+
+Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index, double t) {
+  const Support& support = path.surroundings.supports[index];
+  Hold hold;
+  hold.node = held_link(support);
+  hold.position = support.hold_position;
+  hold.orientation = support.orientation;
+  hold.target = pose_of(path, state, index, t);
+  if (support.orientation == Orientation::about_tangent) {
+    // Held against the frame of the last step, carried along with the tangent and turned by what the motion asks.
+    const double last = state.phase == Phase::settle ? t : state.t;
+    const Quat before = pose_of(path, state, index, last).frame;
+    const Vec3 turn = math::log_map(before.conjugate() * hold.target.frame);
+    hold.target.frame = state.transported[index] * math::exp_map(Vec3(0, 0, turn[2]));
+  }
+  return hold;
+}
+
+void fix_base(const Support& support, const Pose& pose, ChainProblem& problem, Chain& chain) {
+  for (int c = 0; c < 3; ++c) {
+    const bool held = support.hold_position[static_cast<std::size_t>(c)];
+    problem.base_fixed[static_cast<std::size_t>(c)] = held;
+    if (held) chain.base.position[c] = pose.position[c];
+  }
+  const bool clamped = support.orientation == Orientation::full;
+  for (std::size_t c = 3; c < 6; ++c) problem.base_fixed[c] = clamped;
+  if (clamped) chain.base.frame = pose.frame;
+}
+
+void add_loads(const PathProblem& path, const PathState& state, double t, ChainProblem& problem) {
+  const bool approach = state.phase == Phase::approach;
+  const double share = approach ? t : 1;
+  for (std::size_t i = 0; i < problem.force.size(); ++i) {
+    problem.force[i] = share * path.ribbon.node_mass[i] * path.surroundings.gravity;
+  }
+  for (const constraint::Load& load : path.surroundings.loads) {
+    constraint::LoadKey key = constraint::load_at(load, approach ? 0 : t);
+    key.force *= share;
+    key.torque *= share;
+    if (load.frame == constraint::LoadFrame::space && key.torque.isZero()) {
+      problem.force[static_cast<std::size_t>(load.node)] += key.force;
+    } else {
+      problem.loads.push_back({load.node, load.frame, key.force, key.torque});
+    }
+  }
+  std::stable_sort(problem.loads.begin(), problem.loads.end(), [](auto& a, auto& b) { return a.node > b.node; });
+}
+
+}  // namespace
+
+int held_link(const Support& support) { return support.segment >= 0 ? support.segment : support.node; }
+
+bool base_is_held(const PathProblem& path) {
+  const auto& supports = path.surroundings.supports;
+  return std::any_of(supports.begin(), supports.end(), [&](const Support& s) { return is_base(path.ribbon, s); });
+}
+
+double motion_between(const PathProblem& path, double t0, double t1) {
+  constexpr int kParts = 256;   // finer than half a turn each, so that the shorter rotation is the right one
+  double most = 0;
+  for (const Support& support : path.surroundings.supports) {
+    double sum = 0;
+    for (int k = 0; k < kParts; ++k) {
+      const Pose a = constraint::pose_at(support.motion, t0 + (t1 - t0) * k / kParts);
+      const Pose b = constraint::pose_at(support.motion, t0 + (t1 - t0) * (k + 1) / kParts);
+      sum += std::max((a.position - b.position).norm() / path.ribbon.length,
+                      math::log_map(a.frame.conjugate() * b.frame).norm());
+    }
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+ChainProblem problem_at(const PathProblem& path, const PathState& state, double t, Chain& chain) {
+  const Ribbon& ribbon = ribbon_of(path, state);
+  ChainProblem problem;
+  problem.model = path.options.model;
+  problem.barrier = path.options.barrier;
+  problem.force.assign(static_cast<std::size_t>(ribbon.node_count()), Vec3::Zero());
+  problem.closed = state.closed;
+  const auto& supports = path.surroundings.supports;
+  // A strip that nothing holds is held at its base: its shape does not depend on where it is.
+  if (supports.empty()) problem.base_fixed.fill(true);
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    if (is_base(ribbon, supports[i])) {
+      fix_base(supports[i], pose_of(path, state, i, t), problem, chain);
+    } else {
+      problem.holds.push_back(hold_at(path, state, i, t));
+    }
+  }
+  std::stable_sort(problem.holds.begin(), problem.holds.end(),
+                   [](const Hold& a, const Hold& b) { return a.node > b.node; });
+  add_loads(path, state, t, problem);
+  return problem;
+}
+
+}  // namespace wunderlich::solver

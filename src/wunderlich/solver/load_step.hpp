@@ -1,0 +1,21 @@
+/// The minimisation problem of one load step: supports and loads of the surroundings at one load parameter.
+#pragma once
+
+#include "wunderlich/solver/equilibrium.hpp"
+
+namespace wunderlich::solver {
+
+/// Supports at load parameter t as base conditions, holds and loads. Moves the base of `chain` to its prescribed
+/// pose where it has one.
+ChainProblem problem_at(const PathProblem& path, const PathState& state, double t, geometry::Chain& chain);
+
+/// The link whose pose a support holds; the number of segments for the end node's own frame.
+int held_link(const constraint::Support& support);
+
+/// Is the start node's pose prescribed, so that it is the base of the chain.
+bool base_is_held(const PathProblem& path);
+
+/// Way that the busiest support makes between two load parameters: turns [rad] and displacements / length, summed.
+double motion_between(const PathProblem& path, double t0, double t1);
+
+}  // namespace wunderlich::solver
