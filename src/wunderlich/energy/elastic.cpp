@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "wunderlich/energy/link_quadrature.hpp"
 #include "wunderlich/energy/width_factor.hpp"
 
 namespace wunderlich::energy {
@@ -11,154 +12,189 @@ using geometry::HingeHessian;
 using geometry::HingeJet;
 using geometry::Ribbon;
 using geometry::State;
+using geometry::Strains;
 
 namespace {
 
-/// Coordinates of one hinge's energy: theta of both segments, eta of the node, and the two eta of each segment that
-/// holds half of it. The same eta may appear more than once: contributions add up.
-constexpr int kTheta = 0, kEta = 6, kLeft = 7, kRight = 9, kLocal = 11;
-using Local = Eigen::Matrix<double, kLocal, 1>;
-using LocalMatrix = Eigen::Matrix<double, kLocal, kLocal>;
+/// What a link's energy depends on: (kappa, tau, eta) at either end.
+using Ends = Eigen::Matrix<double, 6, 1>;
+using EndsMatrix = Eigen::Matrix<double, 6, 6>;
+constexpr int kEtaA = 2, kEtaB = 5;
+
+/// The chart's share of that: theta of the two segments at either end's hinge, then eta of both ends. A segment may
+/// appear more than once: contributions add up.
+constexpr int kLocal = 14;
+using Local = std::array<int, kLocal>;
 
 double ruling_ratio(const Ribbon& ribbon, const State& state, int segment) {
   const auto s = static_cast<std::size_t>(segment);
   return 0.5 * ribbon.width * (state.eta[s + 1] - state.eta[s]) / ribbon.rest_length[s];
 }
 
-/// Chart index of each local coordinate, -1 where there is none.
-std::array<int, kLocal> local_indices(const Hinge& hinge) {
-  std::array<int, kLocal> index;
-  for (int k = 0; k < 3; ++k) {
-    index[static_cast<std::size_t>(k)] = hinge.before < 0 ? -1 : geometry::theta_index(hinge.before) + k;
-    index[static_cast<std::size_t>(k) + 3] = hinge.after < 0 ? -1 : geometry::theta_index(hinge.after) + k;
+/// A function of the ends with its derivatives.
+struct LinkTerms {
+  double value = 0;
+  Ends gradient = Ends::Zero();
+  EndsMatrix hessian = EndsMatrix::Zero();
+};
+
+/// Adds weight/2 E, E = kappa^2 + 2 tau^2 + tau^2 eta^2, of the end whose kappa stands at `at`.   @eq Shen2015:11
+void add_trapezoid(double weight, const Ends& ends, int at, LinkTerms& terms) {
+  const double kappa = ends[at], tau = ends[at + 1], eta = ends[at + 2], stretch = 2 + eta * eta;
+  terms.value += 0.5 * weight * (kappa * kappa + tau * tau * stretch);
+  terms.gradient.segment<3>(at) += weight * Vec3(kappa, tau * stretch, tau * tau * eta);
+  Mat3 hessian;
+  hessian << 1, 0, 0, 0, stretch, 2 * tau * eta, 0, 2 * tau * eta, tau * tau;
+  terms.hessian.block<3, 3>(at, at) += weight * hessian;
+}
+
+/// The correction knows tau only as kappa eta.
+void add_correction(const LinkQuadrature& rule, double weight, const Ends& ends, LinkTerms& terms) {
+  const LinkEnergy e = correction(rule, weight, {ends[0], ends[2]}, {ends[3], ends[5]});
+  terms.value += e.value;
+  for (int i = 0; i < 2; ++i) {
+    terms.gradient[2 * i] += e.grad_a[i];
+    terms.gradient[3 + 2 * i] += e.grad_b[i];
+    for (int j = 0; j < 2; ++j) {
+      terms.hessian(2 * i, 2 * j) += e.hess_aa(i, j);
+      terms.hessian(2 * i, 3 + 2 * j) += e.hess_ab(i, j);
+      terms.hessian(3 + 2 * i, 2 * j) += e.hess_ab(j, i);
+      terms.hessian(3 + 2 * i, 3 + 2 * j) += e.hess_bb(i, j);
+    }
   }
-  index[kEta] = geometry::eta_index(hinge.node);
-  index[kLeft] = hinge.before < 0 ? -1 : geometry::eta_index(hinge.before);
-  index[kLeft + 1] = hinge.before < 0 ? -1 : geometry::eta_index(hinge.before + 1);
-  index[kRight] = hinge.after < 0 ? -1 : geometry::eta_index(hinge.after);
-  index[kRight + 1] = hinge.after < 0 ? -1 : geometry::eta_index(hinge.after + 1);
+}
+
+/// Multiplies by phi(x), x = slope (eta_b - eta_a).
+void multiply(const WidthFactor& phi, double slope, LinkTerms& terms) {
+  Ends x = Ends::Zero();
+  x[kEtaA] = -slope;
+  x[kEtaB] = slope;
+  terms.hessian *= phi.value;
+  terms.hessian += phi.first * (x * terms.gradient.transpose() + terms.gradient * x.transpose());
+  terms.hessian += phi.second * terms.value * x * x.transpose();
+  terms.gradient = (phi.value * terms.gradient + phi.first * terms.value * x).eval();
+  terms.value *= phi.value;
+}
+
+/// Energy of one link. The strains of a loop's node 0 are those of the seam's hinge, seen from the start.
+LinkTerms link_terms(const Ribbon& ribbon, const Model& model, const State& state, const Strains& strain, int segment) {
+  const auto s = static_cast<std::size_t>(segment);
+  Ends ends;
+  ends << strain.kappa[s], strain.tau[s], state.eta[s], strain.kappa[s + 1], strain.tau[s + 1], state.eta[s + 1];
+  const LinkQuadrature& rule = quadrature(ribbon, model, s);
+  const double weight = 0.5 * ribbon.bending_stiffness * ribbon.width * ribbon.rest_length[s];
+  LinkTerms terms;
+  add_trapezoid((1 - rule.midpoint) * weight, ends, 0, terms);
+  add_trapezoid((1 - rule.midpoint) * weight, ends, 3, terms);
+  if (rule.midpoint != 0) add_correction(rule, weight, ends, terms);
+  multiply(width_factor(model, ruling_ratio(ribbon, state, segment)), 0.5 * ribbon.width / ribbon.rest_length[s],
+           terms);
+  return terms;
+}
+
+/// The hinge whose strain a node shows, with its derivatives; none (before = after = -1) at a free end.
+struct NodeJet {
+  Hinge hinge;
+  HingeJet jet{Vec3::Zero(), Mat3::Zero(), Mat3::Zero()};
+  double sign = 1;  ///< of kappa: -1 at node 0 of a loop whose seam reverses the surface
+};
+
+std::vector<NodeJet> node_jets(const Ribbon& ribbon, const State& state, StrainMeasure measure) {
+  std::vector<NodeJet> out(static_cast<std::size_t>(ribbon.node_count()));
+  for (const Hinge& hinge : geometry::hinges(ribbon)) {
+    out[static_cast<std::size_t>(hinge.node)] = {hinge, hinge_jet(ribbon, state, hinge, measure), 1};
+  }
+  if (ribbon.is_loop()) {
+    out.front() = out.back();
+    out.front().sign = ribbon.seam_sign();
+  }
+  return out;
+}
+
+/// d(kappa, tau)/d(theta before, theta after).
+Eigen::Matrix<double, 2, 6> strain_jacobian(const NodeJet& node) {
+  Eigen::Matrix<double, 2, 6> out;
+  out << node.sign * node.jet.before.row(1), node.sign * node.jet.after.row(1), node.jet.before.row(2),
+      node.jet.after.row(2);
+  return out;
+}
+
+/// Chart index of each local coordinate, -1 where there is none.
+Local local_indices(const NodeJet& a, const NodeJet& b, int segment) {
+  Local index;
+  std::size_t at = 0;
+  for (const int s : {a.hinge.before, a.hinge.after, b.hinge.before, b.hinge.after}) {
+    for (int k = 0; k < 3; ++k) index[at++] = s < 0 ? -1 : geometry::theta_index(s) + k;
+  }
+  index[at++] = geometry::eta_index(segment);
+  index[at] = geometry::eta_index(segment + 1);
   return index;
 }
 
-/// What one segment contributes to the weight of a hinge: D w l/4 phi(x), with derivatives in eta_{s+1}.
-WidthFactor half_cell(const Ribbon& ribbon, const Model& model, const State& state, int segment) {
-  if (segment < 0) return {0, 0, 0};
-  const double length = ribbon.rest_length[static_cast<std::size_t>(segment)];
-  const WidthFactor phi = width_factor(model, ruling_ratio(ribbon, state, segment));
-  const double scale = 0.25 * ribbon.bending_stiffness * ribbon.width * length;
-  const double x_slope = 0.5 * ribbon.width / length;
-  return {scale * phi.value, scale * x_slope * phi.first, scale * x_slope * x_slope * phi.second};
+/// d(ends)/d(local).
+Eigen::Matrix<double, 6, kLocal> ends_jacobian(const NodeJet& a, const NodeJet& b) {
+  Eigen::Matrix<double, 6, kLocal> out = Eigen::Matrix<double, 6, kLocal>::Zero();
+  out.block<2, 6>(0, 0) = strain_jacobian(a);
+  out.block<2, 6>(3, 6) = strain_jacobian(b);
+  out(kEtaA, 12) = out(kEtaB, 13) = 1;
+  return out;
 }
 
-/// E of one hinge with derivatives in (gamma, kappa, tau, eta).
-struct Density {
-  double value;
-  Vec4 gradient;
-  Mat4 hessian;
-};
-
-Density density(const Vec3& strain, double eta) {
-  const double kappa = strain[1], tau = strain[2];
-  Density e{kappa * kappa + tau * tau * (2 + eta * eta), Vec4::Zero(), Mat4::Zero()};
-  e.gradient << 0, 2 * kappa, 2 * tau * (2 + eta * eta), 2 * tau * tau * eta;
-  e.hessian(1, 1) = 2;
-  e.hessian(2, 2) = 2 * (2 + eta * eta);
-  e.hessian(2, 3) = e.hessian(3, 2) = 4 * tau * eta;
-  e.hessian(3, 3) = 2 * tau * tau;
-  return e;
-}
-
-double node_eta(const State& state, const Hinge& hinge) { return state.eta[static_cast<std::size_t>(hinge.node)]; }
-
-/// d(strain, eta)/d(local).
-Eigen::Matrix<double, 4, kLocal> density_jacobian(const HingeJet& jet) {
-  Eigen::Matrix<double, 4, kLocal> jacobian = Eigen::Matrix<double, 4, kLocal>::Zero();
-  jacobian.block<3, 3>(0, kTheta) = jet.before;
-  jacobian.block<3, 3>(0, kTheta + 3) = jet.after;
-  jacobian(3, kEta) = 1;
-  return jacobian;
-}
-
-/// Gradient of the weight in the local coordinates.
-Local weight_gradient(const WidthFactor& left, const WidthFactor& right) {
-  Local g = Local::Zero();
-  g[kLeft] = -left.first;
-  g[kLeft + 1] = left.first;
-  g[kRight] = -right.first;
-  g[kRight + 1] = right.first;
-  return g;
-}
-
-void add_weight_hessian(double scale, const WidthFactor& left, const WidthFactor& right, LocalMatrix& h) {
-  Mat2 pattern;
-  pattern << 1, -1, -1, 1;
-  h.block<2, 2>(kLeft, kLeft) += scale * left.second * pattern;
-  h.block<2, 2>(kRight, kRight) += scale * right.second * pattern;
-}
-
-Local hinge_gradient(const Ribbon& ribbon, const Model& model, const State& state, const Hinge& hinge) {
-  const HingeJet jet = hinge_jet(ribbon, state, hinge, model.strain);
-  const Density e = density(jet.strain, node_eta(state, hinge));
-  const WidthFactor left = half_cell(ribbon, model, state, hinge.before);
-  const WidthFactor right = half_cell(ribbon, model, state, hinge.after);
-  return (left.value + right.value) * density_jacobian(jet).transpose() * e.gradient +
-         e.value * weight_gradient(left, right);
-}
-
-LocalMatrix hinge_energy_hessian(const Ribbon& ribbon, const Model& model, const State& state, const Hinge& hinge) {
-  const HingeJet jet = hinge_jet(ribbon, state, hinge, model.strain);
-  const Density e = density(jet.strain, node_eta(state, hinge));
-  const WidthFactor left = half_cell(ribbon, model, state, hinge.before);
-  const WidthFactor right = half_cell(ribbon, model, state, hinge.after);
-  const double weight = left.value + right.value;
-  const auto jacobian = density_jacobian(jet);
-  const HingeHessian bend = hinge_hessian(ribbon, state, hinge, model.strain, weight * e.gradient.head<3>());
-  const Local e_slope = jacobian.transpose() * e.gradient;
-  const Local w_slope = weight_gradient(left, right);
-  LocalMatrix h = weight * jacobian.transpose() * e.hessian * jacobian;
-  h += e_slope * w_slope.transpose() + w_slope * e_slope.transpose();
-  h.block<3, 3>(kTheta, kTheta) += bend.before_before;
-  h.block<3, 3>(kTheta, kTheta + 3) += bend.before_after;
-  h.block<3, 3>(kTheta + 3, kTheta) += bend.before_after.transpose();
-  h.block<3, 3>(kTheta + 3, kTheta + 3) += bend.after_after;
-  add_weight_hessian(e.value, left, right, h);
-  return h;
+/// Adds the curvature of a hinge's strain, dV/dkappa and dV/dtau of the end in question given.
+void add_strain_hessian(const Ribbon& ribbon, const State& state, StrainMeasure measure, const NodeJet& node,
+                        const Vec2& slope, Triplets& hessian) {
+  const Hinge& hinge = node.hinge;
+  if (hinge.before < 0 && hinge.after < 0) return;
+  const HingeHessian h = hinge_hessian(ribbon, state, hinge, measure, Vec3(0, node.sign * slope[0], slope[1]));
+  const int a = geometry::theta_index(hinge.before), b = geometry::theta_index(hinge.after);
+  if (hinge.before >= 0) geometry::add_block(a, a, h.before_before, hessian);
+  if (hinge.after >= 0) geometry::add_block(b, b, h.after_after, hessian);
+  if (hinge.before < 0 || hinge.after < 0) return;
+  geometry::add_block(a, b, h.before_after, hessian);
+  geometry::add_block(b, a, h.before_after.transpose(), hessian);
 }
 
 }  // namespace
 
 double elastic_value(const Ribbon& ribbon, const Model& model, const State& state) {
+  const Strains strain = strains(ribbon, state, model.strain);
   double sum = 0;
-  for (const Hinge& hinge : geometry::hinges(ribbon)) {
-    const auto [before, after] = hinge_frames(ribbon, state, hinge.node);
-    const Vec3 strain = geometry::hinge_strain(before, after, hinge.length, model.strain);
-    sum += density(strain, node_eta(state, hinge)).value *
-           (half_cell(ribbon, model, state, hinge.before).value + half_cell(ribbon, model, state, hinge.after).value);
-  }
+  for (int s = 0; s < ribbon.segments; ++s) sum += link_terms(ribbon, model, state, strain, s).value;
   return sum;
 }
 
 void add_elastic_gradient(const Ribbon& ribbon, const Model& model, const State& state, Eigen::VectorXd& gradient) {
-  for (const Hinge& hinge : geometry::hinges(ribbon)) {
-    const Local local = hinge_gradient(ribbon, model, state, hinge);
-    const auto index = local_indices(hinge);
-    for (int k = 0; k < kLocal; ++k) {
-      const int row = index[static_cast<std::size_t>(k)];
-      if (row >= 0) gradient[row] += local[k];
+  const Strains strain = strains(ribbon, state, model.strain);
+  const std::vector<NodeJet> nodes = node_jets(ribbon, state, model.strain);
+  for (int s = 0; s < ribbon.segments; ++s) {
+    const auto k = static_cast<std::size_t>(s);
+    const LinkTerms terms = link_terms(ribbon, model, state, strain, s);
+    const Eigen::Matrix<double, kLocal, 1> local = ends_jacobian(nodes[k], nodes[k + 1]).transpose() * terms.gradient;
+    const Local index = local_indices(nodes[k], nodes[k + 1], s);
+    for (std::size_t i = 0; i < kLocal; ++i) {
+      if (index[i] >= 0) gradient[index[i]] += local[static_cast<Eigen::Index>(i)];
     }
   }
 }
 
 void add_elastic_hessian(const Ribbon& ribbon, const Model& model, const State& state, Triplets& hessian) {
-  for (const Hinge& hinge : geometry::hinges(ribbon)) {
-    const LocalMatrix local = hinge_energy_hessian(ribbon, model, state, hinge);
-    const auto index = local_indices(hinge);
-    for (int j = 0; j < kLocal; ++j) {
-      for (int k = 0; k < kLocal; ++k) {
-        const int row = index[static_cast<std::size_t>(j)], column = index[static_cast<std::size_t>(k)];
-        if (row >= 0 && column >= 0) hessian.emplace_back(row, column, local(j, k));
+  const Strains strain = strains(ribbon, state, model.strain);
+  const std::vector<NodeJet> nodes = node_jets(ribbon, state, model.strain);
+  for (int s = 0; s < ribbon.segments; ++s) {
+    const auto k = static_cast<std::size_t>(s);
+    const NodeJet &a = nodes[k], &b = nodes[k + 1];
+    const LinkTerms terms = link_terms(ribbon, model, state, strain, s);
+    const auto jacobian = ends_jacobian(a, b);
+    const Eigen::Matrix<double, kLocal, kLocal> local = jacobian.transpose() * terms.hessian * jacobian;
+    const Local index = local_indices(a, b, s);
+    for (std::size_t i = 0; i < kLocal; ++i) {
+      for (std::size_t j = 0; j < kLocal; ++j) {
+        if (index[i] < 0 || index[j] < 0) continue;
+        hessian.emplace_back(index[i], index[j], local(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
       }
     }
+    add_strain_hessian(ribbon, state, model.strain, a, terms.gradient.segment<2>(0), hessian);
+    add_strain_hessian(ribbon, state, model.strain, b, terms.gradient.segment<2>(3), hessian);
   }
 }
 

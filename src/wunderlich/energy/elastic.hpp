@@ -1,10 +1,11 @@
 /// Elastic energy of the ribbon in the paper's coordinates, off the constraints as well as on them.
 ///
-/// V = sum over hinges of (D w/2) E (l_-/2 phi(x_-) + l_+/2 phi(x_+)),   E = kappa^2 + 2 tau^2 + tau^2 eta^2,
-/// with l_-, x_- rest length and ruling ratio of the segment before the hinge, l_+, x_+ of the one after. In other
-/// words each segment holds half a cell of the hinge at either end. A clamped end has the one half cell inside
-/// the strip, a free end none; segment 0 of a loop holds half of the seam's hinge.
-/// Where kappa eta = tau, E is kappa^2 (1 + eta^2)^2.
+/// V = sum over segments of (D w l/4) phi(x) ((1 - m)(E_a + E_b) + 2 m G^2 - 2 c kappa_m^2 (eta_b - eta_a)^2),
+///   E = kappa^2 + 2 tau^2 + tau^2 eta^2,   G = kappa_m (1 + eta_m^2),
+/// with a and b the hinges at the two ends of the segment, x its ruling ratio, kappa_m and eta_m means of the two ends,
+/// and the shares m and c of energy/link_quadrature.hpp. So each segment holds half a cell of the hinge at either end;
+/// a free end has no hinge and E = 0, and segment 0 of a loop sees the seam's hinge from the other side. Where
+/// kappa eta = tau, E is kappa^2 (1 + eta^2)^2, and this is the energy of joint_energy.hpp.
 /// @eq Shen2015:11
 #pragma once
 

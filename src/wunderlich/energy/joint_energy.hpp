@@ -3,6 +3,7 @@
 #pragma once
 
 #include "wunderlich/base/types.hpp"
+#include "wunderlich/energy/link_quadrature.hpp"
 #include "wunderlich/energy/model.hpp"
 #include "wunderlich/energy/width_factor.hpp"
 #include "wunderlich/geometry/joint.hpp"
@@ -32,13 +33,6 @@ inline Bending bending(StrainMeasure measure, double h, double kappa, double eta
   return b;
 }
 
-/// Energy of one link in (kappa, eta) of its two nodes.
-struct LinkEnergy {
-  double value = 0;
-  Vec2 grad_a, grad_b;
-  Mat2 hess_aa, hess_ab, hess_bb;
-};
-
 /// Joint coordinates at one end of a link, and D w times the length of that hinge that lies in the link.
 struct LinkEnd {
   double kappa, eta;
@@ -46,24 +40,12 @@ struct LinkEnd {
   double weight;
 };
 
-/// The quadrature of bending^2 along a link: the trapezoid rule, corrected inside the strip by a share of the
-/// midpoint rule and by a term in the change of eta. Both corrections are O(l^2); the plain rule (share and term
-/// zero) has the same order but three to thirty times the error (docs/decisions/0012).
-struct LinkQuadrature {
-  double midpoint = 0;     ///< share of (kappa_m (1 + eta_m^2))^2, m the mean of the two ends
-  double ruling = 0;       ///< times -kappa_m^2 (eta_b - eta_a)^2
-};
-inline constexpr LinkQuadrature kPlainQuadrature{};
-inline constexpr LinkQuadrature kCorrectedQuadrature{0.1, 0.27};
-
 /// Value of the quadrature (times D w length / 2) without derivatives, for line searches.
 inline double link_bending(const LinkQuadrature& rule, const LinkEnd& a, const LinkEnd& b) {
   const double ga = a.bending.value, gb = b.bending.value;
-  double mean = 0.5 * (1 - rule.midpoint) * (a.weight * ga * ga + b.weight * gb * gb);
-  if (rule.midpoint == 0) return mean;
-  const double km = 0.5 * (a.kappa + b.kappa), em = 0.5 * (a.eta + b.eta), jump = b.eta - a.eta;
-  const double gm = km * (1 + em * em);
-  return mean + 0.5 * (a.weight + b.weight) * (rule.midpoint * gm * gm - rule.ruling * km * km * jump * jump);
+  const double ends = 0.5 * (1 - rule.midpoint) * (a.weight * ga * ga + b.weight * gb * gb);
+  if (rule.midpoint == 0) return ends;
+  return ends + correction_value(rule, 0.5 * (a.weight + b.weight), {a.kappa, a.eta}, {b.kappa, b.eta});
 }
 
 namespace detail {
@@ -71,34 +53,28 @@ namespace detail {
 /// link_bending with derivatives: gradient and Hessian in (kappa_a, eta_a), (kappa_b, eta_b).
 inline LinkEnergy bending_terms(const LinkQuadrature& rule, const LinkEnd& a, const LinkEnd& b) {
   LinkEnergy e;
-  e.value = link_bending(rule, a, b);
+  if (rule.midpoint == 0) {
+    e.grad_a.setZero();
+    e.grad_b.setZero();
+    e.hess_aa.setZero();
+    e.hess_ab.setZero();
+    e.hess_bb.setZero();
+  } else {
+    e = correction(rule, 0.5 * (a.weight + b.weight), {a.kappa, a.eta}, {b.kappa, b.eta});
+  }
   const auto end = [&](const LinkEnd& at, Vec2& grad, Mat2& hess) {
     const Bending& g = at.bending;
     const double w = (1 - rule.midpoint) * at.weight, f = w * g.value;
-    grad = {f * g.kappa, f * g.eta};
+    e.value += 0.5 * f * g.value;
+    grad += Vec2(f * g.kappa, f * g.eta);
     const double mixed = w * g.kappa * g.eta + f * g.kappa_eta;
-    hess << w * g.kappa * g.kappa + f * g.kappa_kappa, mixed, mixed, w * g.eta * g.eta + f * g.eta_eta;
+    hess(0, 0) += w * g.kappa * g.kappa + f * g.kappa_kappa;
+    hess(0, 1) += mixed;
+    hess(1, 0) += mixed;
+    hess(1, 1) += w * g.eta * g.eta + f * g.eta_eta;
   };
   end(a, e.grad_a, e.hess_aa);
   end(b, e.grad_b, e.hess_bb);
-  e.hess_ab.setZero();
-  if (rule.midpoint == 0) return e;
-  const double weight = 0.5 * (a.weight + b.weight), wp = weight * rule.midpoint, wc = weight * rule.ruling;
-  const double km = 0.5 * (a.kappa + b.kappa), em = 0.5 * (a.eta + b.eta), jump = b.eta - a.eta;
-  const double g_kappa = 1 + em * em, g = km * g_kappa, g_eta = 2 * km * em;
-  const double slope_kappa = wp * g * g_kappa - wc * km * jump * jump, slope_eta = wp * g * g_eta;
-  const double turn = 2 * wc * km * km * jump, cross = 2 * wc * km * jump, stiff = 2 * wc * km * km;
-  e.grad_a += Vec2(slope_kappa, slope_eta + turn);
-  e.grad_b += Vec2(slope_kappa, slope_eta - turn);
-  const double kk = 0.5 * (wp * g_kappa * g_kappa - wc * jump * jump);
-  const double ke = 0.5 * wp * (g_kappa * g_eta + 2 * g * em), ee = 0.5 * wp * (g_eta * g_eta + 2 * g * km);
-  Mat2 aa, ab, bb;
-  aa << kk, ke + cross, ke + cross, ee - stiff;
-  bb << kk, ke - cross, ke - cross, ee - stiff;
-  ab << kk, ke - cross, ke + cross, ee + stiff;
-  e.hess_aa += aa;
-  e.hess_bb += bb;
-  e.hess_ab += ab;
   return e;
 }
 

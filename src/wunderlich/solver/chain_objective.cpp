@@ -33,13 +33,6 @@ energy::LinkEnd link_end(const Ribbon& ribbon, const ChainProblem& problem, cons
   return {kappa, eta, energy::bending(problem.model.strain, h, kappa, eta, k.fold[node]), weight};
 }
 
-/// The correction supposes a full hinge at both ends of the link; the printed measure keeps the printed sum.
-const energy::LinkQuadrature& quadrature(const Ribbon& ribbon, const ChainProblem& problem, std::size_t link) {
-  const bool at_end = link == 0 || link + 1 == ribbon.rest_length.size();
-  const bool plain = problem.model.strain == energy::StrainMeasure::printed || (at_end && !ribbon.is_loop());
-  return plain ? energy::kPlainQuadrature : energy::kCorrectedQuadrature;
-}
-
 /// Turn of the frame `q` about its tangent against `reference` transported along the shortest rotation of the
 /// tangent, and the row that is its gradient.                                            @eq Shen2015:18
 struct TangentTurn {
@@ -223,7 +216,7 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
   ObjectiveValue value;
   for (std::size_t s = 0; s < n; ++s) {
     const double x = 0.5 * ribbon.width * (chain.eta[s + 1] - chain.eta[s]) / ribbon.rest_length[s];
-    const double bent = energy::link_bending(quadrature(ribbon, problem, s), link_end(ribbon, problem, chain, k, s, s),
+    const double bent = energy::link_bending(energy::quadrature(ribbon, problem.model, s), link_end(ribbon, problem, chain, k, s, s),
                                              link_end(ribbon, problem, chain, k, s, s + 1));
     value.elastic += bent * energy::width_factor(problem.model, x).value;
     value.barrier += e1 * energy::ruling_barrier(x).value;
@@ -278,7 +271,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
     barrier.first *= e1;
     barrier.second *= e1;
     const energy::LinkEnergy e = energy::link_energy(
-        energy::width_factor(problem.model, x), barrier, slope, quadrature(ribbon, problem, i),
+        energy::width_factor(problem.model, x), barrier, slope, energy::quadrature(ribbon, problem.model, i),
         link_end(ribbon, problem, chain, k, i, i), link_end(ribbon, problem, chain, k, i, i + 1));
     link.grad_a = e.grad_a;
     link.grad_b = e.grad_b;
