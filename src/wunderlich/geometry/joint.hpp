@@ -13,9 +13,9 @@ namespace wunderlich::geometry {
 
 /// Half-angle form of the fold; cheap to compute once and to differentiate.
 struct Fold {
-  double s2 = 1;          ///< 1 + eta^2
-  double s = 1;           ///< |ruling|
-  double half_sin = 0;    ///< sin and cos of half the fold angle h kappa s
+  double s2 = 1;        ///< 1 + eta^2
+  double s = 1;         ///< |ruling|
+  double half_sin = 0;  ///< sin and cos of half the fold angle h kappa s
   double half_cos = 1;
 };
 
@@ -37,22 +37,22 @@ inline Quat fold_rotation(const Fold& fold, double eta) {
 
 /// First derivatives of the rotation (left increments) and the symmetric second ones, in the parent's axes.
 struct FoldDerivatives {
-  Vec3 kappa, eta;                   ///< theta = kappa_axis dkappa + eta_axis deta + ...
-  Vec3 kappa_eta, eta_eta;           ///< ... + kappa_eta dkappa deta + eta_eta deta^2 / 2
+  Vec3 kappa, eta;          ///< theta = kappa_axis dkappa + eta_axis deta + ...
+  Vec3 kappa_eta, eta_eta;  ///< ... + kappa_eta dkappa deta + eta_eta deta^2 / 2
 };
 
 inline FoldDerivatives fold_derivatives(const Fold& fold, double h, double kappa, double eta) {
   const double sine = 2 * fold.half_sin * fold.half_cos;
-  const double versine = 2 * fold.half_sin * fold.half_sin;      // 1 - cos
+  const double versine = 2 * fold.half_sin * fold.half_sin;  // 1 - cos
   const double cosine = 1 - versine;
   const double i2 = 1 / fold.s2, i1 = 1 / fold.s, hk = h * kappa;
   const double a = hk * eta * i2, b = sine * i1 * i2, c = versine * i2;
   FoldDerivatives d;
   d.kappa = {0, h, h * eta};
   d.eta = {c, a - b * eta, a * eta + b};
-  const double ak = h * eta * i2, bk = h * cosine * i2, ck = h * sine * i2;
+  const double ak = h * eta * i2, bk = h * cosine * i2, ck = h * sine * i1;
   d.kappa_eta = {0.5 * ck, 0.5 * (ak - bk * eta), 0.5 * (h + ak * eta + bk)};
-  const double turn_eta = hk * eta * i1;                         // d(angle)/d(eta)
+  const double turn_eta = hk * eta * i1;  // d(angle)/d(eta)
   const double ae = hk * (1 - eta * eta) * i2 * i2;
   const double be = (cosine * turn_eta * i1 - 3 * sine * eta * i1 * i2) * i2;
   const double ce = (sine * turn_eta - 2 * versine * eta * i2) * i2;
