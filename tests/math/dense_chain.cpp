@@ -1,0 +1,118 @@
+#include "math/dense_chain.hpp"
+
+#include <Eigen/Dense>
+
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::testing {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using math::ChainSystem;
+
+namespace {
+
+/// d(v_i, theta_i)/dx of every link.
+std::vector<MatrixXd> pose_maps(const ChainSystem& system, Index size) {
+  std::vector<MatrixXd> out;
+  MatrixXd pose = MatrixXd::Zero(6, size);
+  pose.leftCols<6>().setIdentity();
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    pose.block<3, 2>(3, 6 + 2 * static_cast<Index>(i)) += system.links[i].axes;
+    out.push_back(pose);
+    if (i + 1 < system.links.size()) pose.topRows<3>() -= math::skew(system.links[i].span) * pose.bottomRows<3>();
+  }
+  return out;
+}
+
+void add_links(const ChainSystem& system, DenseChain& out) {
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Index k = 6 + 2 * static_cast<Index>(i);
+    for (Index c = 0; c < 2; ++c) out.hessian(k + c, k + c) += system.shift[static_cast<std::size_t>(c)];
+    if (i + 1 == system.links.size()) break;
+    const math::ChainLink& link = system.links[i];
+    out.gradient.segment<2>(k) += link.grad_a;
+    out.gradient.segment<2>(k + 2) += link.grad_b;
+    out.hessian.block<2, 2>(k, k) += link.hess_aa;
+    out.hessian.block<2, 2>(k + 2, k + 2) += link.hess_bb;
+    out.hessian.block<2, 2>(k, k + 2) += link.hess_ab;
+    out.hessian.block<2, 2>(k + 2, k) += link.hess_ab.transpose();
+  }
+}
+
+void add_rows(const ChainSystem& system, const std::vector<MatrixXd>& poses, DenseChain& out) {
+  for (std::size_t k = 0; k < system.rows.size(); ++k) {
+    const math::ChainRow& row = system.rows[k];
+    math::Vec6 weight;
+    weight << row.v, row.theta;
+    const VectorXd seen = poses[static_cast<std::size_t>(row.node)].transpose() * weight;
+    VectorXd line = seen;
+    line.segment<2>(6 + 2 * row.node) += row.u;
+    line.head<3>() += row.base_v;
+    line.segment<3>(3) += row.base_theta;
+    line.segment<2>(6) += row.first_u;
+    out.jacobian.row(static_cast<Index>(k)) = line.transpose();
+    out.residual[static_cast<Index>(k)] = row.residual;
+    out.hessian += row.penalty * seen * seen.transpose();
+    out.gradient += row.penalty * row.residual * seen;
+  }
+}
+
+MatrixXd columns(const MatrixXd& matrix, const std::vector<Index>& which) {
+  MatrixXd out(matrix.rows(), static_cast<Index>(which.size()));
+  for (std::size_t k = 0; k < which.size(); ++k) out.col(static_cast<Index>(k)) = matrix.col(which[k]);
+  return out;
+}
+
+}  // namespace
+
+DenseChain dense_chain(const ChainSystem& system) {
+  const Index size = 6 + 2 * static_cast<Index>(system.links.size()), m = static_cast<Index>(system.rows.size());
+  DenseChain out{MatrixXd::Zero(size, size), VectorXd::Zero(size), MatrixXd::Zero(m, size), VectorXd::Zero(m), {}};
+  const std::vector<MatrixXd> poses = pose_maps(system, size);
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const MatrixXd v = poses[i].topRows<3>();
+    out.hessian += system.links[i].stiffness * v.transpose() * v;
+    out.gradient += v.transpose() * system.links[i].force;
+  }
+  for (const math::PoseTerm& term : system.pose_terms) {
+    const MatrixXd& pose = poses[static_cast<std::size_t>(term.node)];
+    out.hessian += pose.transpose() * term.hessian * pose;
+    out.gradient += pose.transpose() * term.gradient;
+  }
+  add_links(system, out);
+  add_rows(system, poses, out);
+  for (Index k = 0; k < size; ++k) {
+    if (k >= 6 || !system.base_fixed[static_cast<std::size_t>(k)]) out.free.push_back(k);
+  }
+  return out;
+}
+
+DenseStep solve(const DenseChain& chain) {
+  const Index m = chain.residual.size(), size = static_cast<Index>(chain.free.size());
+  const MatrixXd a = columns(chain.jacobian, chain.free);
+  const MatrixXd h = columns(columns(chain.hessian, chain.free).transpose(), chain.free);
+  const VectorXd g = columns(chain.gradient.transpose(), chain.free).transpose();
+  MatrixXd kkt = MatrixXd::Zero(size + m, size + m);
+  kkt << h, a.transpose(), a, MatrixXd::Zero(m, m);
+  VectorXd right(size + m);
+  right << -g, -chain.residual;
+  const VectorXd solved = kkt.fullPivLu().solve(right);
+  DenseStep out{VectorXd::Zero(chain.gradient.size()), solved.tail(m), 0};
+  for (Index k = 0; k < size; ++k) out.x[chain.free[static_cast<std::size_t>(k)]] = solved[k];
+  const MatrixXd null = m > 0 ? MatrixXd(a.fullPivLu().kernel()) : MatrixXd::Identity(size, size);
+  const MatrixXd basis = MatrixXd(null.householderQr().householderQ()).leftCols(null.cols());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(basis.transpose() * h * basis, Eigen::EigenvaluesOnly);
+  out.negative = static_cast<int>((eigen.eigenvalues().array() < 0).count());
+  return out;
+}
+
+VectorXd stacked(const math::ChainStep& step) {
+  VectorXd out(6 + 2 * static_cast<Index>(step.u.size()));
+  out.head<6>() = step.base;
+  for (std::size_t i = 0; i < step.u.size(); ++i) out.segment<2>(6 + 2 * static_cast<Index>(i)) = step.u[i];
+  return out;
+}
+
+}  // namespace wunderlich::testing

@@ -1,0 +1,190 @@
+#include "math/moving_chain.hpp"
+
+#include <algorithm>
+
+#include "wunderlich/geometry/joint.hpp"
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::testing {
+
+using Eigen::VectorXd;
+using math::ChainRow;
+using math::ChainSystem;
+using math::Mat6;
+using math::PoseTerm;
+using math::Vec6;
+
+namespace {
+
+struct Poses {
+  std::vector<Vec3> r;
+  std::vector<Quat> before, after;  ///< frames before and after each joint
+};
+
+Poses poses_of(const MovingChain& chain) {
+  Poses out;
+  Quat q = chain.base.frame;
+  Vec3 r = chain.base.position;
+  for (std::size_t i = 0; i < chain.u.size(); ++i) {
+    out.before.push_back(q);
+    const geometry::Fold fold = geometry::make_fold(chain.hinge[i], chain.u[i][0], chain.u[i][1]);
+    q = q * fold_rotation(fold, chain.u[i][1]);
+    out.after.push_back(q);
+    out.r.push_back(r);
+    if (i < chain.span.size()) r += chain.span[i] * (q * Vec3::UnitZ());
+  }
+  return out;
+}
+
+/// Displacement and rotation vector of a link since the origin.
+Vec6 pose_change(const MovingChain& chain, const Poses& poses, std::size_t i) {
+  Vec6 out;
+  out << poses.r[i] - chain.origin[i], math::log_map(poses.after[i] * chain.frame[i].conjugate());
+  return out;
+}
+
+/// What a covector on (v, rotation vector) is on left increments of the frame.
+Vec6 on_increments(const Vec6& change, Vec6 covector) {
+  covector.tail<3>() = (math::left_jacobian_inverse(change.tail<3>()).transpose() * covector.tail<3>()).eval();
+  return covector;
+}
+
+double row_value(const MovingChain& chain, const Poses& poses, const ChainRow& row) {
+  const auto i = static_cast<std::size_t>(row.node);
+  const Vec6 change = pose_change(chain, poses, i);
+  return row.residual + row.v.dot(change.head<3>()) + row.theta.dot(change.tail<3>()) +
+         row.u.dot(chain.u[i] - chain.first[i]) + row.base_v.dot(poses.r[0] - chain.base_origin) +
+         row.first_u.dot(chain.u[0] - chain.first[0]);
+}
+
+Vec4 pair(const MovingChain& chain, std::size_t i) {
+  Vec4 out;
+  out << chain.u[i], chain.u[i + 1];
+  return out;
+}
+
+}  // namespace
+
+MovingChain random_moving_chain(int links, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(0.5, 1.5);
+  const auto vector = [&](double scale) { return Vec3(scale * Vec3(normal(random), normal(random), normal(random))); };
+  MovingChain chain;
+  chain.base = {vector(1), math::exp_map(vector(1))};
+  for (int i = 0; i <= links; ++i) {
+    chain.hinge.push_back(0.3 * unit(random));
+    if (i < links) chain.span.push_back(0.4 * unit(random));
+    chain.u.emplace_back(2 * normal(random), 0.7 * normal(random));
+    chain.stiffness.push_back(unit(random));
+    chain.anchor.push_back(vector(1));
+    const Mat4 half = Mat4::NullaryExpr([&] { return normal(random); });
+    if (i < links) chain.link_gradient.push_back(Vec4::NullaryExpr([&] { return normal(random); }));
+    if (i < links) chain.link_hessian.push_back(half * half.transpose() - 0.5 * Mat4::Identity());
+  }
+  for (const int node : {links, links, links, 2}) {
+    ChainRow row;
+    row.node = node;
+    row.v = vector(1);
+    row.theta = vector(1);
+    row.u = vector(1).head<2>();
+    row.base_v = vector(1);
+    row.first_u = vector(1).head<2>();
+    row.residual = 0.1 * normal(random);
+    row.multiplier = normal(random);
+    chain.rows.push_back(row);
+  }
+  for (const int node : {links, 1}) {
+    PoseTerm term;
+    term.node = node;
+    term.gradient << vector(1), vector(1);
+    const Mat6 half = Mat6::NullaryExpr([&] { return normal(random); });
+    term.hessian = half + half.transpose();
+    chain.terms.push_back(term);
+  }
+  const Poses poses = poses_of(chain);
+  chain.origin = poses.r;
+  chain.frame = poses.after;
+  chain.first = chain.u;
+  chain.base_origin = chain.base.position;
+  return chain;
+}
+
+MovingChain moved(const MovingChain& chain, const VectorXd& x) {
+  MovingChain out = chain;
+  out.base.position += x.head<3>();
+  out.base.frame = math::exp_map(x.segment<3>(3)) * chain.base.frame;
+  for (std::size_t i = 0; i < out.u.size(); ++i) out.u[i] += x.segment<2>(6 + 2 * static_cast<Eigen::Index>(i));
+  return out;
+}
+
+double value(const MovingChain& chain) {
+  const Poses poses = poses_of(chain);
+  double sum = 0;
+  for (std::size_t i = 0; i < poses.r.size(); ++i) {
+    sum += 0.5 * chain.stiffness[i] * (poses.r[i] - chain.anchor[i]).squaredNorm();
+  }
+  for (std::size_t i = 0; i < chain.span.size(); ++i) {
+    const Vec4 u = pair(chain, i);
+    sum += chain.link_gradient[i].dot(u) + 0.5 * u.dot(chain.link_hessian[i] * u);
+  }
+  for (const PoseTerm& term : chain.terms) {
+    const Vec6 change = pose_change(chain, poses, static_cast<std::size_t>(term.node));
+    sum += term.gradient.dot(change) + 0.5 * change.dot(term.hessian * change);
+  }
+  for (const ChainRow& row : chain.rows) sum += row.multiplier * row_value(chain, poses, row);
+  return sum;
+}
+
+ChainSystem system_at(const MovingChain& chain) {
+  const Poses poses = poses_of(chain);
+  ChainSystem system;
+  system.links.resize(chain.u.size());
+  for (std::size_t i = 0; i < chain.u.size(); ++i) {
+    math::ChainLink& link = system.links[i];
+    const double kappa = chain.u[i][0], eta = chain.u[i][1];
+    const auto d = fold_derivatives(geometry::make_fold(chain.hinge[i], kappa, eta), chain.hinge[i], kappa, eta);
+    const Mat3 before = poses.before[i].toRotationMatrix();
+    link.axes << before * d.kappa, before * d.eta;
+    link.axes_01 = before * d.kappa_eta;
+    link.axes_11 = before * d.eta_eta;
+    link.stiffness = chain.stiffness[i];
+    link.force = chain.stiffness[i] * (poses.r[i] - chain.anchor[i]);
+    if (i == chain.span.size()) break;
+    link.span = chain.span[i] * (poses.after[i] * Vec3::UnitZ());
+    const Mat4& h = chain.link_hessian[i];
+    const Vec4 slope = chain.link_gradient[i] + h * pair(chain, i);
+    link.grad_a = slope.head<2>();
+    link.grad_b = slope.tail<2>();
+    link.hess_aa = h.topLeftCorner<2, 2>();
+    link.hess_ab = h.topRightCorner<2, 2>();
+    link.hess_bb = h.bottomRightCorner<2, 2>();
+  }
+  for (ChainRow row : chain.rows) {
+    const Vec6 change = pose_change(chain, poses, static_cast<std::size_t>(row.node));
+    Vec6 covector;
+    covector << row.v, row.theta;
+    row.residual = row_value(chain, poses, row);
+    row.theta = on_increments(change, covector).tail<3>();
+    system.rows.push_back(row);
+  }
+  for (PoseTerm term : chain.terms) {
+    const Vec6 change = pose_change(chain, poses, static_cast<std::size_t>(term.node));
+    term.gradient = on_increments(change, term.gradient + term.hessian * change);
+    system.pose_terms.push_back(term);
+  }
+  return system;
+}
+
+VectorXd gradient(const MovingChain& chain) {
+  math::ChainWorkspace work;
+  math::ChainStep step;
+  chain_step(system_at(chain), work, step);
+  VectorXd out(6 + 2 * static_cast<Eigen::Index>(chain.u.size()));
+  out.head<6>() = work.base_gradient;
+  for (std::size_t i = 0; i < chain.u.size(); ++i) {
+    out.segment<2>(6 + 2 * static_cast<Eigen::Index>(i)) = work.gradient[i];
+  }
+  return out;
+}
+
+}  // namespace wunderlich::testing
