@@ -2,7 +2,6 @@
 
 #include <cassert>
 
-
 namespace wunderlich::geometry {
 
 void forward_kinematics(const Ribbon& ribbon, const Chain& chain, Kinematics& k) {

@@ -13,18 +13,18 @@
 namespace wunderlich::geometry {
 
 struct Chain {
-  Pose base;                       ///< node 0 with the start node's frame if clamped, else the first segment's
-  std::vector<double> kappa;       ///< (segments + 1), 0 where fold_length is 0 [1/m]
-  std::vector<double> eta;         ///< (segments + 1); a loop's first entries mirror its last ones when it is closed
+  Pose base;                  ///< node 0 with the start node's frame if clamped, else the first segment's
+  std::vector<double> kappa;  ///< (segments + 1), 0 where fold_length is 0 [1/m]
+  std::vector<double> eta;    ///< (segments + 1); a loop's first entries mirror its last ones when it is closed
 };
 
 /// Positions and frames of a chain; entry `segments` of the frames is the frame beyond the last hinge: the end
 /// node's own, or for a loop the first segment seen across the seam.
 struct Kinematics {
-  std::vector<Vec3> r;             ///< (segments + 1)
-  std::vector<Quat> q;             ///< (segments + 1)
-  std::vector<Mat3> frame;         ///< (segments + 1) the same as matrices
-  std::vector<Fold> fold;          ///< (segments + 1)
+  std::vector<Vec3> r;      ///< (segments + 1)
+  std::vector<Quat> q;      ///< (segments + 1)
+  std::vector<Mat3> frame;  ///< (segments + 1) the same as matrices
+  std::vector<Fold> fold;   ///< (segments + 1)
 };
 
 void forward_kinematics(const Ribbon& ribbon, const Chain& chain, Kinematics& kinematics);

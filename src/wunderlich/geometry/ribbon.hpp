@@ -22,7 +22,8 @@ struct RibbonSpec {
   double area_density = 1;       ///< rho [kg/m^2]
   Closure closure = Closure::open;
   int half_twists = 0;            ///< loops: turns of pi of the frame about +d3 as u grows
-  std::array<bool, 2> clamped{};  ///< open strips: does the start, the end carry a prescribed frame
+  std::array<bool, 2> clamped{};  ///< open strips: does the start, the end have a frame of its own,
+                                  ///< prescribed by a clamp or turned by a torque
   bool free_rulings = false;      ///< open strips: leave eta free at the ends instead of 0
   std::vector<double> spacing;    ///< relative segment lengths; empty means uniform
 };
@@ -41,7 +42,7 @@ struct Ribbon {
   std::vector<double> rest_length;   ///< (segments) [m]
   std::vector<double> node_u;        ///< (segments + 1) arc length of each node [m]
   std::vector<double> hinge_length;  ///< (segments + 1) length a hinge stands for [m]: the mean of its
-                                     ///< two segments, half a segment at a clamped end, 0 at a free end
+                                     ///< two segments, half a segment at an end with a frame, 0 at a free end
                                      ///< and at node 0 of a loop (its hinge is the seam's, at the last node)
   std::vector<double> node_mass;     ///< (segments + 1) [kg]; a loop's seam mass stands at node 0
 

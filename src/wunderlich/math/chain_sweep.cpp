@@ -1,6 +1,7 @@
 #include "wunderlich/math/chain_sweep.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -21,11 +22,11 @@ struct Columns {
 
 /// Value function of everything beyond the joint under way, in (v, theta, u).
 struct Value {
-  Mat6 p = Mat6::Zero();                              ///< pose, pose
-  Eigen::Matrix<double, 6, 2> y = Eigen::Matrix<double, 6, 2>::Zero();   ///< pose, u
-  Mat2 z = Mat2::Zero();                              ///< u, u
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();   ///< adjoint wrench: the exact gradient in the pose
-  Vec2 gradient = Vec2::Zero();                       ///< exact gradient in u so far
+  Mat6 p = Mat6::Zero();                                                ///< pose, pose
+  Eigen::Matrix<double, 6, 2> y = Eigen::Matrix<double, 6, 2>::Zero();  ///< pose, u
+  Mat2 z = Mat2::Zero();                                                ///< u, u
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< adjoint wrench: the exact gradient in the pose
+  Vec2 gradient = Vec2::Zero();                      ///< exact gradient in u so far
 };
 
 int negative_count(const Mat2& z) {
@@ -42,22 +43,26 @@ bool invert(const Mat2& z, Mat2& inverse) {
   return true;
 }
 
+/// Where the sorted lists of pose terms, probe rows and constraint rows stand.
+struct Cursor {
+  std::size_t term, probe, row;
+};
+
 /// A pose term's or row's share at its link; row k is column k + 1.
 template <class Block>
-void add_pose_parts(const ChainSystem& system, int node, std::size_t& next_row, std::size_t& next_term, Value& value,
-                    Block& columns) {
-  for (; next_term < system.pose_terms.size() && system.pose_terms[next_term].node == node; ++next_term) {
-    const PoseTerm& term = system.pose_terms[next_term];
+void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Block& columns) {
+  for (; next.term < system.pose_terms.size() && system.pose_terms[next.term].node == node; ++next.term) {
+    const PoseTerm& term = system.pose_terms[next.term];
     value.p += term.hessian;
     columns.col(0).template head<6>() += term.gradient;
     value.force += term.gradient.head<3>();
     value.torque += term.gradient.tail<3>();
   }
-  for (; next_row < system.rows.size() && system.rows[next_row].node == node; ++next_row) {
-    const ChainRow& row = system.rows[next_row];
+  const auto take = [&](std::size_t index) {
+    const ChainRow& row = system.rows[index];
     Vec6 pose;
     pose << row.v, row.theta;
-    const auto k = static_cast<Eigen::Index>(next_row) + 1;
+    const auto k = static_cast<Eigen::Index>(index) + 1;
     columns.col(k).template head<6>() = pose;
     columns.col(k).template tail<2>() = row.u;
     value.p += row.penalty * pose * pose.transpose();
@@ -65,7 +70,10 @@ void add_pose_parts(const ChainSystem& system, int node, std::size_t& next_row, 
     value.force += row.multiplier * row.v;
     value.torque += row.multiplier * row.theta;
     value.gradient += row.multiplier * row.u;
-  }
+  };
+  const std::size_t probes = system.probe_count();
+  while (next.probe < probes && system.rows[next.probe].node == node) take(next.probe++);
+  while (next.row < system.rows.size() && system.rows[next.row].node == node) take(next.row++);
 }
 
 /// theta_i = theta_{i-1} + axes u, and the joint's second-order terms.
@@ -117,14 +125,35 @@ void pass_span(const Vec3& d, bool geometric, Value& value, Block& columns) {
   value.torque += d.cross(value.force);
 }
 
+/// Loads without a potential: their rows are probes y = row . x with multiplier follower * y, solved together with
+/// the constraints. The probes come first.
+template <class Gram>
+bool solve_with_followers(const ChainSystem& system, const Gram& gram, ChainStep& step) {
+  const auto m = static_cast<Eigen::Index>(system.rows.size());
+  const Eigen::Index probes = system.follower.rows();
+  const Eigen::MatrixXd schur = gram.bottomRightCorner(m, m);
+  Eigen::VectorXd rhs = -gram.col(0).tail(m);
+  // probes: (1 + K T) lambda = K rhs;   constraints: T lambda = residual + rhs
+  Eigen::MatrixXd matrix = schur;
+  matrix.topRows(probes) = system.follower * schur.topRows(probes);
+  matrix.topLeftCorner(probes, probes).diagonal().array() += 1;
+  rhs.head(probes) = (system.follower * rhs.head(probes)).eval();
+  for (Eigen::Index k = probes; k < m; ++k) rhs[k] += system.rows[static_cast<std::size_t>(k)].residual;
+  const Eigen::VectorXd solved = matrix.partialPivLu().solve(rhs);
+  for (Eigen::Index k = 0; k < m; ++k) step.multiplier[static_cast<std::size_t>(k)] = solved[k];
+  return solved.allFinite();
+}
+
 template <class Gram>
 bool solve_multipliers(const ChainSystem& system, const Gram& gram, ChainStep& step) {
   const auto m = static_cast<Eigen::Index>(system.rows.size());
   step.multiplier.resize(system.rows.size());
   if (m == 0) return true;
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 16, 16>;
-  using SmallVec = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
-  using Large = Eigen::MatrixXd;
+  if (system.follower.size() > 0) return solve_with_followers(system, gram, step);
+  // Up to this many rows nothing is allocated.
+  constexpr int kSmall = 16;
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSmall, kSmall>;
+  using SmallVec = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSmall, 1>;
   const auto solve = [&](auto schur, auto rhs) {
     schur = gram.bottomRightCorner(m, m);
     rhs = -gram.col(0).tail(m);
@@ -141,7 +170,7 @@ bool solve_multipliers(const ChainSystem& system, const Gram& gram, ChainStep& s
     for (Eigen::Index k = 0; k < m; ++k) step.multiplier[static_cast<std::size_t>(k)] = rhs[k];
     return rhs.allFinite();
   };
-  return m <= 16 ? solve(Small(m, m), SmallVec(m)) : solve(Large(m, m), Eigen::VectorXd(m));
+  return m <= kSmall ? solve(Small(m, m), SmallVec(m)) : solve(Eigen::MatrixXd(m, m), Eigen::VectorXd(m));
 }
 
 /// Eliminates the free coordinates of the base; leaves the solution operator in `inverse` (zero where fixed).
@@ -156,7 +185,8 @@ bool eliminate_base(const ChainSystem& system, const Mat6& p, Mat6& inverse, int
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
   Block block(count, count);
   for (Eigen::Index a = 0; a < count; ++a) {
-    for (Eigen::Index b = 0; b < count; ++b) block(a, b) = p(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
+    for (Eigen::Index b = 0; b < count; ++b)
+      block(a, b) = p(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
   }
   const Eigen::LDLT<Block> ldlt(block);
   const auto d = ldlt.vectorD();
@@ -166,7 +196,8 @@ bool eliminate_base(const ChainSystem& system, const Mat6& p, Mat6& inverse, int
   }
   const Block solved = ldlt.solve(Block::Identity(count, count));
   for (Eigen::Index a = 0; a < count; ++a) {
-    for (Eigen::Index b = 0; b < count; ++b) inverse(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]) = solved(a, b);
+    for (Eigen::Index b = 0; b < count; ++b)
+      inverse(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]) = solved(a, b);
   }
   return true;
 }
@@ -186,12 +217,12 @@ class Sweep {
 
   bool backward(ChainStep& step) {
     const int last = static_cast<int>(system_.links.size()) - 1;
-    std::size_t next_row = 0, next_term = 0;
+    Cursor next{0, 0, system_.probe_count()};
     step.negative_pivots = 0;
     for (int i = last; i >= 0; --i) {
       const auto k = static_cast<std::size_t>(i);
       const ChainLink& link = system_.links[k];
-      add_pose_parts(system_, i, next_row, next_term, value_, columns_);
+      add_pose_parts(system_, i, next, value_, columns_);
       value_.p.diagonal().template head<3>().array() += link.stiffness;
       columns_.col(0).template head<3>() += link.force;
       value_.force += link.force;
@@ -315,7 +346,9 @@ bool chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step
   const std::size_t count = system.links.size();
   const std::size_t m = system.rows.size() + 1;
   assert(count >= 2);
-  assert(std::is_sorted(system.rows.begin(), system.rows.end(), [](auto& a, auto& b) { return a.node > b.node; }));
+  const auto probes = system.rows.begin() + static_cast<std::ptrdiff_t>(system.probe_count());
+  const auto later = [](const ChainRow& a, const ChainRow& b) { return a.node > b.node; };
+  assert(std::is_sorted(system.rows.begin(), probes, later) && std::is_sorted(probes, system.rows.end(), later));
   work.gains.resize(count);
   work.columns.resize(count * 2 * m);
   work.force.resize(count);
@@ -324,10 +357,14 @@ bool chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step
   step.u.resize(count);
   step.v.resize(count);
   switch (m) {
-    case 1: return run_sweep<1>(system, work, step);
-    case 7: return run_sweep<7>(system, work, step);
-    case 9: return run_sweep<9>(system, work, step);
-    default: return run_sweep<0>(system, work, step);
+    case 1:
+      return run_sweep<1>(system, work, step);
+    case 7:
+      return run_sweep<7>(system, work, step);
+    case 9:
+      return run_sweep<9>(system, work, step);
+    default:
+      return run_sweep<0>(system, work, step);
   }
 }
 

@@ -24,43 +24,46 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// First and second derivatives of the objective around one node: the joint at node i, the node, link i.
 struct ChainLink {
-  Mat32 axes;              ///< d theta / d u of the joint, world; a zero column for a fixed coordinate
-  Vec3 axes_01, axes_11;   ///< second derivatives of the joint's rotation, world (the 00 one vanishes)
-  Vec3 span;               ///< node i to node i + 1, world; unused at the last node
-  double stiffness;        ///< Hessian of the node term in r_i is stiffness * identity
-  Vec3 force;              ///< gradient of the node term in r_i
-  Vec2 grad_a, grad_b;     ///< gradient of link i's energy in u_i, u_{i+1}
+  Mat32 axes;             ///< d theta / d u of the joint, world; a zero column for a fixed coordinate
+  Vec3 axes_01, axes_11;  ///< second derivatives of the joint's rotation, world (the 00 one vanishes)
+  Vec3 span;              ///< node i to node i + 1, world; unused at the last node
+  double stiffness;       ///< Hessian of the node term in r_i is stiffness * identity
+  Vec3 force;             ///< gradient of the node term in r_i
+  Vec2 grad_a, grad_b;    ///< gradient of link i's energy in u_i, u_{i+1}
   Mat2 hess_aa, hess_ab, hess_bb;
 };
 
 /// Row of a linearised constraint: a functional of the pose of one link (or the end frame), of its u, and of
 /// the base pose and u_0 (for closures).
 struct ChainRow {
-  int node;                                       ///< link whose pose and u it sees; N: the end frame
+  int node;  ///< link whose pose and u it sees; N: the end frame
   Vec3 v = Vec3::Zero(), theta = Vec3::Zero();
   Vec2 u = Vec2::Zero();
   Vec3 base_v = Vec3::Zero(), base_theta = Vec3::Zero();
   Vec2 first_u = Vec2::Zero();
-  double residual = 0;                            ///< value at the current iterate; the step makes it 0
-  double penalty = 0;                             ///< adds penalty/2 * (row)^2 to the objective's Hessian
-  double multiplier = 0;                          ///< current value, for the geometric terms
+  double residual = 0;    ///< value at the current iterate; the step makes it 0
+  double penalty = 0;     ///< adds penalty/2 * (row)^2 to the objective's Hessian
+  double multiplier = 0;  ///< current value, for the geometric terms
 };
 
 /// A term in the pose of link `node` (or the end frame): torque-like gradients with their exact Hessian.
 struct PoseTerm {
   int node;
-  Vec6 gradient = Vec6::Zero();                   ///< in (v, theta)
+  Vec6 gradient = Vec6::Zero();  ///< in (v, theta)
   Mat6 hessian = Mat6::Zero();
 };
 
 /// One linearised problem.
 struct ChainSystem {
-  std::vector<ChainLink> links;                   ///< N + 1 entries; the last has no link, only joint and node
-  std::vector<ChainRow> rows;                     ///< sorted by decreasing node
-  std::vector<PoseTerm> pose_terms;               ///< sorted by decreasing node
-  std::array<bool, 6> base_fixed{};               ///< v (3), theta (3) of the base
-  std::array<double, 2> shift{};                  ///< added to the diagonal of every 2 x 2 pivot
-  bool geometric = true;                          ///< false: leave out the terms that carry forces
+  std::vector<ChainLink> links;      ///< N + 1 entries; the last has no link, only joint and node
+  std::vector<ChainRow> rows;        ///< probes, then constraints; each sorted by decreasing node
+  std::vector<PoseTerm> pose_terms;  ///< sorted by decreasing node
+  Eigen::MatrixXd follower;          ///< (probes x probes) unsymmetric part of the Hessian, in the
+                                     ///< coordinates of as many probe rows: loads without a potential
+  std::array<bool, 6> base_fixed{};  ///< v (3), theta (3) of the base
+  std::array<double, 2> shift{};     ///< added to the diagonal of every 2 x 2 pivot
+  std::size_t probe_count() const { return static_cast<std::size_t>(follower.rows()); }
+  bool geometric = true;  ///< false: leave out the terms that carry forces
 };
 
 /// What a joint keeps from the backward sweep.
@@ -70,20 +73,20 @@ struct ChainGain {
 };
 
 struct ChainStep {
-  Vec6 base = Vec6::Zero();                       ///< (v_0, theta_base)
-  std::vector<Vec2> u;                            ///< (N + 1)
-  std::vector<Vec3> v;                            ///< (N + 1) displacement of the nodes
-  std::vector<double> multiplier;                 ///< (rows) new values
-  int negative_pivots = 0;                        ///< negative eigenvalues of the reduced Hessian
+  Vec6 base = Vec6::Zero();        ///< (v_0, theta_base)
+  std::vector<Vec2> u;             ///< (N + 1)
+  std::vector<Vec3> v;             ///< (N + 1) displacement of the nodes
+  std::vector<double> multiplier;  ///< (rows) new values
+  int negative_pivots = 0;         ///< negative eigenvalues of the reduced Hessian, followers left out
 };
 
 /// Buffers; reused between calls without allocation once they have their size.
 struct ChainWorkspace {
   std::vector<ChainGain> gains;
-  std::vector<double> columns;                    ///< per node, 2 x (1 + rows): Z^-1 times the columns
-  std::vector<Vec3> force, torque;                ///< adjoint wrench on link i at node i: exact gradients
-  std::vector<Vec2> gradient;                     ///< exact gradient of objective + multipliers * rows in u_i
-  Vec6 base_gradient;                             ///< the same in (v_0, theta_base)
+  std::vector<double> columns;      ///< per node, 2 x (1 + rows): Z^-1 times the columns
+  std::vector<Vec3> force, torque;  ///< adjoint wrench on link i at node i: exact gradients
+  std::vector<Vec2> gradient;       ///< exact gradient of objective + multipliers * rows in u_i
+  Vec6 base_gradient;               ///< the same in (v_0, theta_base)
 };
 
 /// Solves for the step. Returns false if a pivot or the Schur complement is singular (the step is then not

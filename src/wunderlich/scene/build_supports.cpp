@@ -247,6 +247,13 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
   }
   const Cell forces = child(root, "forces");
   for (std::size_t i = 0; i < count(forces); ++i) surroundings.loads.push_back(load_of(element(forces, i), strip));
+  // A torque on an end turns that end's own frame: the half cell up to it must be able to bend.
+  for (const constraint::Load& load : surroundings.loads) {
+    const bool turns =
+        std::any_of(load.keys.begin(), load.keys.end(), [](const LoadKey& k) { return !k.torque.isZero(0); });
+    const bool at_end = load.node == 0 || load.node == ribbon.segments;
+    if (turns && at_end && ribbon.closure == geometry::Closure::open) ribbon.clamped[load.node == 0 ? 0 : 1] = true;
+  }
   const bool floating = surroundings.supports.empty() && !surroundings.gravity.isZero(0);
   if (floating) fail(child(root, "gravity"), "nothing holds the strip against it; add a clamp or a pin");
   return surroundings;

@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMaxFailures = 200;   // rejected steps in a row, each at half the length
+constexpr int kMaxFailures = 200;  // rejected steps in a row, each at half the length
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -55,8 +55,7 @@ HistoryRow history_of(const PathProblem& path, const PathState& state, const Sta
   HistoryRow row;
   row.time = shape.time;
   row.energy.elastic = solver::elastic_energy(ribbon, path.options.model, state.chain);
-  row.energy.normalized =
-      row.energy.elastic * path.ribbon.length / (path.ribbon.bending_stiffness * path.ribbon.width);
+  row.energy.normalized = row.energy.elastic * path.ribbon.length / (path.ribbon.bending_stiffness * path.ribbon.width);
   for (std::size_t i = 0; i < shape.r.size(); ++i) {
     row.energy.gravity -= path.ribbon.node_mass[i] * path.surroundings.gravity.dot(shape.r[i]);
   }

@@ -34,9 +34,9 @@ struct RunResult {
 
 /// Called after each step; returns false to stop (Ctrl-C).
 struct RunStatus {
-  std::string phase;               ///< "bend", "twist", "close", "load", "settle"
-  double fraction = 0;             ///< of the path, in [0, 1]
-  int iterations = 0;              ///< Newton iterations so far
+  std::string phase;    ///< "bend", "twist", "close", "load", "settle"
+  double fraction = 0;  ///< of the path, in [0, 1]
+  int iterations = 0;   ///< Newton iterations so far
 };
 using Observer = std::function<bool(const RunStatus&)>;
 

@@ -20,24 +20,24 @@ struct SolverOptions {
   Method method = Method::equilibrium;
   energy::Model energy;
   LoopPath loop_path = LoopPath::automatic;
-  double duration = 1;             ///< load parameter at the end of the path [s]
-  int steps = 0;                   ///< load steps of the path; 0: as few as it takes
-  double tolerance = 1e-10;        ///< on the Newton step: rotation [rad] and displacement / length
-  int max_iterations = 2000;       ///< Newton iterations for the whole path
-  double barrier = 1e-9;           ///< e1 of the final ruling barrier e1 D (l/w) sum -ln(1 - x^2)
+  double duration = 1;        ///< load parameter at the end of the path [s]
+  int steps = 0;              ///< load steps of the path; 0: as few as it takes
+  double tolerance = 1e-10;   ///< on the Newton step: rotation [rad] and displacement / length
+  int max_iterations = 2000;  ///< Newton iterations for the whole path
+  double barrier = 1e-9;      ///< e1 of the final ruling barrier e1 D (l/w) sum -ln(1 - x^2)
 };
 
 struct OutputOptions {
-  int frames = 60;                 ///< at most so many recorded frames
-  int subdivision = 3;             ///< rendered strips per segment along the length (the paper's Fig. 6: 3)
-  int across = 8;                  ///< rendered quads across the width
-  std::vector<std::string> formats{"vtp", "glb", "svg", "html"};   ///< files beside the tables
+  int frames = 60;      ///< at most so many recorded frames
+  int subdivision = 3;  ///< rendered strips per segment along the length (the paper's Fig. 6: 3)
+  int across = 8;       ///< rendered quads across the width
+  std::vector<std::string> formats{"vtp", "glb", "svg", "html"};  ///< files beside the tables
 };
 
 struct Scene {
   std::string name;
-  std::string title;               ///< one line, for `wunderlich scenes`
-  std::string resolved;            ///< the scene as YAML after all overrides: what `--resume` runs again
+  std::string title;     ///< one line, for `wunderlich scenes`
+  std::string resolved;  ///< the scene as YAML after all overrides: what `--resume` runs again
   geometry::RibbonSpec ribbon;
   constraint::Surroundings surroundings;
   SolverOptions solver;

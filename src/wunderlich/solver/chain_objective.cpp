@@ -105,9 +105,9 @@ Penalty penalties(const Ribbon& ribbon) {
 void append_rows(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                  const std::vector<double>& multipliers, std::vector<ChainRow>& rows) {
   const Penalty penalty = penalties(ribbon);
-  rows.clear();
+  const std::size_t probes = rows.size();
   const auto push = [&](ChainRow row) {
-    row.multiplier = multipliers[rows.size()];
+    row.multiplier = multipliers[rows.size() - probes];
     rows.push_back(row);
   };
   if (problem.closed) {
@@ -190,14 +190,39 @@ void fix_coordinate(std::vector<ChainLink>& links, std::size_t i, int c) {
   }
 }
 
+/// Derivative of a load's generalized force in the pose it acts on, in the chart of left rotation increments.
+/// Material: force and torque turn along; half of the torque's change is the chart's. Space: only that half.
+math::Mat6 follower_stiffness(const PointLoad& load, const Quat& frame) {
+  math::Mat6 k = math::Mat6::Zero();
+  const Mat3 half_torque = 0.5 * math::skew(in_space(load, load.torque, frame));
+  if (load.frame == LoadFrame::material) {
+    k.topRightCorner<3, 3>() = math::skew(in_space(load, load.force, frame));
+    k.bottomRightCorner<3, 3>() = half_torque;
+  } else {
+    k.bottomRightCorner<3, 3>() = -half_torque;
+  }
+  return k;
+}
+
+/// Point loads as gradients, with probe rows for the part of their derivative that no potential has.
 void add_loads(const ChainProblem& problem, const Kinematics& k, ChainSystem& system) {
   system.pose_terms.clear();
-  for (const PointLoad& load : problem.loads) {
+  const auto count = static_cast<Eigen::Index>(problem.loads.size());
+  system.follower.setZero(6 * count, 6 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const PointLoad& load = problem.loads[static_cast<std::size_t>(i)];
     const Quat& frame = k.q[static_cast<std::size_t>(load.node)];
     math::PoseTerm term;
     term.node = load.node;
     term.gradient << -in_space(load, load.force, frame), -in_space(load, load.torque, frame);
     system.pose_terms.push_back(term);
+    system.follower.block<6, 6>(6 * i, 6 * i) = follower_stiffness(load, frame);
+    for (int c = 0; c < 6; ++c) {
+      ChainRow row;
+      row.node = load.node;
+      (c < 3 ? row.v : row.theta) = Vec3::Unit(c % 3);
+      system.rows.push_back(row);
+    }
   }
 }
 
@@ -216,8 +241,9 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
   ObjectiveValue value;
   for (std::size_t s = 0; s < n; ++s) {
     const double x = 0.5 * ribbon.width * (chain.eta[s + 1] - chain.eta[s]) / ribbon.rest_length[s];
-    const double bent = energy::link_bending(energy::quadrature(ribbon, problem.model, s), link_end(ribbon, problem, chain, k, s, s),
-                                             link_end(ribbon, problem, chain, k, s, s + 1));
+    const double bent =
+        energy::link_bending(energy::quadrature(ribbon, problem.model, s), link_end(ribbon, problem, chain, k, s, s),
+                             link_end(ribbon, problem, chain, k, s, s + 1));
     value.elastic += bent * energy::width_factor(problem.model, x).value;
     value.barrier += e1 * energy::ruling_barrier(x).value;
   }
@@ -283,8 +309,9 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);
     if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 1);
   }
-  append_rows(ribbon, problem, chain, k, multipliers, system.rows);
+  system.rows.clear();
   add_loads(problem, k, system);
+  append_rows(ribbon, problem, chain, k, multipliers, system.rows);
 }
 
 }  // namespace wunderlich::solver

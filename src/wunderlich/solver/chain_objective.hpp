@@ -14,10 +14,10 @@ namespace wunderlich::solver {
 
 /// A prescribed pose at one load parameter: a support with its target.
 struct Hold {
-  int node = 0;                                        ///< link whose node and frame are held; N: the end frame
-  std::array<bool, 3> position{true, true, true};      ///< world axes
+  int node = 0;                                    ///< link whose node and frame are held; N: the end frame
+  std::array<bool, 3> position{true, true, true};  ///< world axes
   constraint::Orientation orientation = constraint::Orientation::full;
-  Pose target;                                         ///< about_tangent: the frame to be transported and turned
+  Pose target;  ///< about_tangent: the frame to be transported and turned
 };
 
 /// A force and torque on the pose of one link (N: the end frame).
@@ -32,14 +32,14 @@ struct PointLoad {
 /// holds and, for loops, the closure.
 struct ChainProblem {
   energy::Model model;
-  double barrier = 1e-6;                    ///< e1: e1 D (l/w) sum over segments of -ln(1 - x^2)
-  std::vector<Vec3> force;                  ///< (segments + 1) dead force on each node [N]
-  std::vector<PointLoad> loads;             ///< sorted by decreasing node
-  double proximity = 0;                     ///< (proximity/2) sum of hinge weight |r - anchor|^2 [N/m^2]
-  std::vector<Vec3> anchor;                 ///< (segments + 1), used if proximity > 0
-  std::vector<Hold> holds;                  ///< sorted by decreasing node
-  bool closed = false;                      ///< the loop's closure is a constraint
-  std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
+  double barrier = 1e-6;             ///< e1: e1 D (l/w) sum over segments of -ln(1 - x^2)
+  std::vector<Vec3> force;           ///< (segments + 1) dead force on each node [N]
+  std::vector<PointLoad> loads;      ///< sorted by decreasing node
+  double proximity = 0;              ///< (proximity/2) sum of hinge weight |r - anchor|^2 [N/m^2]
+  std::vector<Vec3> anchor;          ///< (segments + 1), used if proximity > 0
+  std::vector<Hold> holds;           ///< sorted by decreasing node
+  bool closed = false;               ///< the loop's closure is a constraint
+  std::array<bool, 6> base_fixed{};  ///< position and rotation of the base
 };
 
 /// Number of constraint rows.
@@ -49,7 +49,7 @@ std::size_t row_count(const ChainProblem& problem);
 struct ObjectiveValue {
   double elastic = 0;
   double barrier = 0;
-  double rest = 0;                          ///< loads and proximal term
+  double rest = 0;  ///< loads and proximal term
   double total() const { return elastic + barrier + rest; }
 };
 

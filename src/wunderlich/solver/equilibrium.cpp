@@ -5,6 +5,7 @@
 
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/solver/load_step.hpp"
+#include "wunderlich/solver/path_step.hpp"
 
 namespace wunderlich::solver {
 
@@ -14,151 +15,14 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr int kBendSteps = 12;           // analytic states, for the film
-constexpr double kTwistStep = kPi / 4;   // of the end of a ring
-constexpr double kMotionStep = 0.08;     // of a support between two places that are held [rad, lengths]
-constexpr int kProximalPasses = 3;       // minimisations with a fictitious mass a load step
-constexpr double kProximity = 1e4;       // that mass, in units of D w / l^4 per length
-constexpr double kPathBarrier = 1e-3;    // e1 on the way; the final state has the path's own
-constexpr double kPlanarAmplitude = 15.1;   // of the figure-eight's start, kappa l
-constexpr double kSmallestStep = 1.0 / 1024;
+constexpr double kMotionStep = 0.08;  // of a support between two places that are held [rad, lengths]
+constexpr int kProximalPasses = 3;    // minimisations with a fictitious mass a load step
+constexpr double kProximity = 1e4;    // that mass, in units of D w / l^4 per length
 constexpr int kSettleRounds = 30;
-constexpr double kSettleTime = 0.05;     // on the clock of the path, for the film
-
-Phase next_phase(const PathProblem& path, Phase phase) {
-  const bool alone = path.surroundings.supports.empty() && path.surroundings.loads.empty();
-  switch (phase) {
-    case Phase::bend: return Phase::twist;
-    case Phase::twist: return Phase::close;
-    case Phase::close: return alone ? Phase::done : Phase::approach;
-    case Phase::approach: return Phase::load;
-    case Phase::load: return Phase::settle;
-    default: return Phase::done;
-  }
-}
-
-bool is_planar(const PathProblem& path) {
-  const LoopPath wish = path.options.loop_path;
-  return wish == LoopPath::planar || (wish == LoopPath::automatic && std::abs(path.ribbon.half_twists) == 2);
-}
-
-/// Isometric states between flat and the start of the loop: a ring, or the planar eight.
-void set_bent(const PathProblem& path, double share, Chain& chain) {
-  const bool planar = is_planar(path);
-  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
-    const double phase = 2 * kPi * path.cut.node_u[i] / path.cut.length;
-    chain.kappa[i] = share / path.cut.length * (planar ? kPlanarAmplitude * std::cos(phase) : 2 * kPi);
-  }
-}
-
-/// A flat strip between two held places can leave the plane either way, and its rulings are undetermined: a small
-/// bow and slope decide both.
-void seed(const Ribbon& ribbon, Chain& chain) {
-  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
-    const double phase = 2 * kPi * ribbon.node_u[i] / ribbon.length;
-    if (geometry::kappa_is_free(ribbon, static_cast<int>(i))) chain.kappa[i] = -0.3 / ribbon.length * std::cos(phase);
-    if (geometry::eta_is_free(ribbon, static_cast<int>(i))) chain.eta[i] = -0.1 * std::sin(phase);
-  }
-}
-
-bool is_flat(const Chain& chain) {
-  return std::all_of(chain.kappa.begin(), chain.kappa.end(), [](double k) { return k == 0; });
-}
+constexpr double kSettleTime = 0.05;  // on the clock of the path, for the film
 
 /// Between two held places flat strips buckle and snap: go there with a fictitious mass, in small steps.
 bool is_proximal(const PathProblem& path) { return path.surroundings.supports.size() > 1; }
-
-void note_frames(const PathProblem& path, PathState& state) {
-  Kinematics k;
-  geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
-  state.transported.clear();
-  for (const auto& support : path.surroundings.supports) {
-    state.transported.push_back(k.q[static_cast<std::size_t>(held_link(support))]);
-  }
-}
-
-void note_origin(const PathProblem& path, PathState& state) {
-  Kinematics k;
-  geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
-  state.origin.clear();
-  for (const auto& support : path.surroundings.supports) {
-    const bool at_base = support.segment < 0 && support.node == 0;
-    const auto i = static_cast<std::size_t>(held_link(support));
-    state.origin.push_back({k.r[i], at_base ? state.chain.base.frame : k.q[i]});
-  }
-}
-
-void enter(const PathProblem& path, Phase phase, PathState& state) {
-  state.phase = phase;
-  state.t = 0;
-  state.dt = 0;
-  if (phase == Phase::approach) note_origin(path, state);
-  note_frames(path, state);
-}
-
-std::string why(const NewtonReport& report, const PathState& state) {
-  std::string text = std::string(phase_name(state.phase)) + " at t = " + std::to_string(state.t) + ": ";
-  switch (report.outcome) {
-    case NewtonOutcome::iteration_limit:
-      return text + "no convergence in " + std::to_string(report.iterations) +
-             " iterations (solver.max_iterations); last step " + std::to_string(report.last_step);
-    case NewtonOutcome::line_search_failed:
-      return text + "no step lowers the energy; the supports probably ask for more than the strip can reach";
-    case NewtonOutcome::singular:
-      return text + "the linear system is singular; supports may hold the same motion twice, or nothing holds the strip";
-    case NewtonOutcome::converged: break;
-  }
-  return text;
-}
-
-NewtonOptions newton_options(const PathProblem& path) {
-  NewtonOptions options;
-  options.tolerance = path.options.tolerance;
-  options.max_iterations = path.options.max_iterations;
-  return options;
-}
-
-/// After a failed step: half the length next time, unless it is too short already.
-void shorten(PathState& state, double planned, PathStep& step) {
-  step.failure = why(step.newton, state);
-  state.dt *= 0.5;
-  step.exhausted = state.dt < kSmallestStep * planned;
-}
-
-/// One minimisation from the state's chain at parameter t; the chain and multipliers change only on success.
-bool solve_at(const PathProblem& path, PathState& state, double t, int proximal_passes, double proximity,
-              NewtonWorkspace& work, PathStep& step) {
-  const Ribbon& ribbon = ribbon_of(path, state);
-  Chain chain = state.chain;
-  std::vector<double> multipliers = state.multipliers;
-  ChainProblem problem = problem_at(path, state, t, chain);
-  NewtonOptions options = newton_options(path);
-  if (proximal_passes > 0) {
-    if (is_flat(chain)) seed(ribbon, chain);
-    const double l = ribbon.length;
-    problem.barrier = std::max(problem.barrier, kPathBarrier);
-    problem.proximity = proximity * ribbon.bending_stiffness * ribbon.width / (l * l * l * l);
-    options.tolerance = std::max(options.tolerance, 1e-7);
-    options.max_iterations = std::min(options.max_iterations, 200);
-  }
-  if (multipliers.size() != row_count(problem)) multipliers.assign(row_count(problem), 0.0);
-  Kinematics k;
-  for (int pass = 0; pass < std::max(1, proximal_passes); ++pass) {
-    if (proximal_passes > 0) {
-      geometry::forward_kinematics(ribbon, chain, k);
-      problem.anchor = k.r;
-    }
-    step.newton = minimise(ribbon, problem, options, chain, multipliers, work);
-    step.iterations += step.newton.iterations;
-    state.iterations += step.newton.iterations;
-    if (!step.newton.converged()) return false;
-  }
-  state.chain = chain;
-  state.multipliers = multipliers;
-  state.negative_modes = step.newton.negative_modes;
-  return true;
-}
 
 /// Steps of the phase under way: their number if nothing fails.
 double planned_step(const PathProblem& path, const PathState& state) {
@@ -181,80 +45,14 @@ bool needs_approach(const PathProblem& path, const PathState& state) {
       const double gap = std::abs(goal.position[c] - own.position[c]);
       if (support.hold_position[static_cast<std::size_t>(c)] && gap > 1e-12 * path.ribbon.length) return true;
     }
-    if (support.orientation != constraint::Orientation::free && own.frame.angularDistance(goal.frame) > 1e-12) return true;
+    if (support.orientation != constraint::Orientation::free && own.frame.angularDistance(goal.frame) > 1e-12)
+      return true;
   }
   const auto& loads = path.surroundings.loads;
   return std::any_of(loads.begin(), loads.end(), [](const constraint::Load& load) {
     const auto key = constraint::load_at(load, 0);
     return !key.force.isZero() || !key.torque.isZero();
   });
-}
-
-PathStep bend_step(const PathProblem& path, PathState& state) {
-  const int next = static_cast<int>(std::lround(state.t * kBendSteps)) + 1;
-  state.t = static_cast<double>(next) / kBendSteps;
-  state.clock = state.t;
-  set_bent(path, state.t, state.chain);
-  if (next == kBendSteps) enter(path, is_planar(path) ? Phase::close : Phase::twist, state);
-  PathStep step;
-  step.accepted = true;
-  return step;
-}
-
-/// Turns the end of the ring about the tangent while its position stays at the start's.
-PathStep twist_step(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
-  const double total = path.ribbon.half_twists * kPi;
-  if (state.dt == 0) state.dt = total == 0 ? 1 : std::min(1.0, kTwistStep / std::abs(total));
-  const double t = std::min(1.0, state.t + state.dt);
-  Chain chain = state.chain;
-  std::vector<double> multipliers = state.multipliers;
-  ChainProblem problem;
-  problem.model = path.options.model;
-  problem.barrier = path.options.barrier;
-  problem.force.assign(chain.kappa.size(), Vec3::Zero());
-  problem.base_fixed.fill(true);
-  Hold hold;
-  hold.node = path.cut.segments;
-  hold.target = {chain.base.position, chain.base.frame * math::exp_map(Vec3(0, 0, t * total))};
-  problem.holds = {hold};
-  PathStep step;
-  step.newton = minimise(path.cut, problem, newton_options(path), chain, multipliers, work);
-  step.iterations = step.newton.iterations;
-  state.iterations += step.iterations;
-  if (!step.newton.converged()) {
-    shorten(state, 1, step);
-    return step;
-  }
-  state.chain = chain;
-  state.multipliers = multipliers;
-  state.clock += t - state.t;
-  state.t = t;
-  step.accepted = true;
-  if (t == 1) enter(path, Phase::close, state);
-  return step;
-}
-
-/// Joins the two half hinges at the seam to one and lets the seam go.
-PathStep close_step(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
-  const geometry::State open = geometry::state_of(path.cut, state.chain, 0);
-  PathState closed = state;
-  closed.closed = true;
-  closed.chain = geometry::chain_of(path.ribbon, open);
-  closed.chain.eta.back() = path.ribbon.seam_sign() * closed.chain.eta.front();
-  closed.multipliers.clear();
-  const PathProblem alone{path.ribbon, path.cut, {}, path.options};
-  PathStep step;
-  step.accepted = solve_at(alone, closed, 0, 0, 0, work, step);
-  if (!step.accepted) {
-    step.failure = why(step.newton, state);
-    step.exhausted = true;
-    state.iterations = closed.iterations;
-    return step;
-  }
-  state = closed;
-  state.clock += 1;
-  enter(path, next_phase(path, Phase::close), state);
-  return step;
 }
 
 PathStep load_step(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
@@ -269,8 +67,8 @@ PathStep load_step(const PathProblem& path, PathState& state, NewtonWorkspace& w
   if (state.dt == 0) state.dt = planned;
   double t = state.t + state.dt;
   if (t > end - 1e-9 * state.dt) t = end;
-  const int passes = is_proximal(path) ? kProximalPasses : 0;
-  step.accepted = solve_at(path, state, t, passes, kProximity, work, step);
+  const Proximal proximal = is_proximal(path) ? Proximal{kProximalPasses, kProximity} : Proximal{};
+  step.accepted = solve_at(path, state, t, proximal, work, step);
   if (!step.accepted) {
     shorten(state, planned, step);
     return step;
@@ -288,7 +86,7 @@ PathStep load_step(const PathProblem& path, PathState& state, NewtonWorkspace& w
 PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
   PathStep step;
   const double end = path.options.duration;
-  step.accepted = solve_at(path, state, end, 0, 0, work, step);
+  step.accepted = solve_at(path, state, end, {}, work, step);
   if (step.accepted) {
     enter(path, Phase::done, state);
     state.clock += kSettleTime;
@@ -300,7 +98,7 @@ PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace&
     return step;
   }
   const double mass = kProximity * std::pow(0.5, state.t);
-  step.accepted = solve_at(path, state, end, kProximalPasses, mass, work, step);
+  step.accepted = solve_at(path, state, end, {kProximalPasses, mass}, work, step);
   step.exhausted = !step.accepted;
   state.clock += kSettleTime;
   state.t += 1;
@@ -312,13 +110,20 @@ PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace&
 
 const char* phase_name(Phase phase) {
   switch (phase) {
-    case Phase::bend: return "bend";
-    case Phase::twist: return "twist";
-    case Phase::close: return "close";
-    case Phase::approach: return "approach";
-    case Phase::load: return "load";
-    case Phase::settle: return "settle";
-    case Phase::done: return "done";
+    case Phase::bend:
+      return "bend";
+    case Phase::twist:
+      return "twist";
+    case Phase::close:
+      return "close";
+    case Phase::approach:
+      return "approach";
+    case Phase::load:
+      return "load";
+    case Phase::settle:
+      return "settle";
+    case Phase::done:
+      return "done";
   }
   return "";
 }
@@ -326,8 +131,12 @@ const char* phase_name(Phase phase) {
 PathProblem make_path(const Ribbon& ribbon, const constraint::Surroundings& surroundings, const PathOptions& options) {
   PathProblem path{ribbon, ribbon, surroundings, options};
   if (ribbon.is_loop()) {
-    geometry::RibbonSpec spec{ribbon.length, ribbon.width, ribbon.segments, ribbon.bending_stiffness,
-                              ribbon.area_density};
+    geometry::RibbonSpec spec;
+    spec.length = ribbon.length;
+    spec.width = ribbon.width;
+    spec.segments = ribbon.segments;
+    spec.bending_stiffness = ribbon.bending_stiffness;
+    spec.area_density = ribbon.area_density;
     spec.clamped = {true, true};
     spec.spacing = ribbon.rest_length;
     path.cut = geometry::make_ribbon(spec);
@@ -355,13 +164,24 @@ PathState start_path(const PathProblem& path) {
 PathStep advance(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
   PathStep step;
   switch (state.phase) {
-    case Phase::bend: step = bend_step(path, state); break;
-    case Phase::twist: step = twist_step(path, state, work); break;
-    case Phase::close: step = close_step(path, state, work); break;
+    case Phase::bend:
+      step = bend_step(path, state);
+      break;
+    case Phase::twist:
+      step = twist_step(path, state, work);
+      break;
+    case Phase::close:
+      step = close_step(path, state, work);
+      break;
     case Phase::approach:
-    case Phase::load: step = load_step(path, state, work); break;
-    case Phase::settle: step = settle_step(path, state, work); break;
-    case Phase::done: break;
+    case Phase::load:
+      step = load_step(path, state, work);
+      break;
+    case Phase::settle:
+      step = settle_step(path, state, work);
+      break;
+    case Phase::done:
+      break;
   }
   if (step.accepted) ++state.steps;
   return step;
@@ -369,13 +189,20 @@ PathStep advance(const PathProblem& path, PathState& state, NewtonWorkspace& wor
 
 double fraction_done(const PathProblem& path, const PathState& state) {
   switch (state.phase) {
-    case Phase::bend: return 0.1 * state.t;
-    case Phase::twist: return 0.1 + 0.4 * state.t;
-    case Phase::close: return 0.5;
-    case Phase::approach: return path.ribbon.is_loop() ? 0.6 + 0.1 * state.t : 0.1 * state.t;
-    case Phase::load: return 0.1 + 0.8 * state.t / path.options.duration;
-    case Phase::settle: return 0.9;
-    case Phase::done: return 1;
+    case Phase::bend:
+      return 0.1 * state.t;
+    case Phase::twist:
+      return 0.1 + 0.4 * state.t;
+    case Phase::close:
+      return 0.5;
+    case Phase::approach:
+      return path.ribbon.is_loop() ? 0.6 + 0.1 * state.t : 0.1 * state.t;
+    case Phase::load:
+      return 0.1 + 0.8 * state.t / path.options.duration;
+    case Phase::settle:
+      return 0.9;
+    case Phase::done:
+      return 1;
   }
   return 0;
 }

@@ -17,25 +17,25 @@ namespace wunderlich::solver {
 
 /// How the path of a closed loop starts.
 enum class LoopPath {
-  automatic,   ///< planar for two half twists, else twist
-  twist,       ///< bend to a ring, turn one end, close
-  planar,      ///< kappa = A cos(2 pi u / l), A from 0 to 15.1 / l: the figure-eight, without contact
+  automatic,  ///< planar for two half twists, else twist
+  twist,      ///< bend to a ring, turn one end, close
+  planar,     ///< kappa = A cos(2 pi u / l), A from 0 to 15.1 / l: the figure-eight, without contact
 };
 
 struct PathOptions {
   energy::Model model;
   LoopPath loop_path = LoopPath::automatic;
-  double duration = 1;             ///< load parameter at the end
-  int steps = 0;                   ///< load steps; 0: chosen from the motion
+  double duration = 1;  ///< load parameter at the end
+  int steps = 0;        ///< load steps; 0: chosen from the motion
   double tolerance = 1e-10;
-  int max_iterations = 2000;       ///< of one minimisation
-  double barrier = 1e-9;           ///< e1 of the ruling barrier
+  int max_iterations = 2000;  ///< of one minimisation
+  double barrier = 1e-9;      ///< e1 of the ruling barrier
 };
 
 /// What does not change along the path.
 struct PathProblem {
   geometry::Ribbon ribbon;
-  geometry::Ribbon cut;            ///< loops: the same strip before it is closed, both ends clamped; else = ribbon
+  geometry::Ribbon cut;  ///< loops: the same strip before it is closed, both ends clamped; else = ribbon
   constraint::Surroundings surroundings;
   PathOptions options;
 };
@@ -48,25 +48,25 @@ const char* phase_name(Phase phase);
 /// Where the path stands: everything a checkpoint needs.
 struct PathState {
   Phase phase = Phase::approach;
-  double t = 0;                    ///< load parameter, or share of the phase
-  double dt = 0;                   ///< step under way; halved on failure
-  double clock = 0;                ///< path parameter run through so far, over all phases; grows with every step
-  int steps = 0;                   ///< accepted so far
-  int iterations = 0;              ///< Newton iterations so far, failed attempts included
-  int negative_modes = 0;          ///< at the last minimisation
-  bool closed = false;             ///< `chain` is of `ribbon`; before a loop closes it is of `cut`
+  double t = 0;            ///< load parameter, or share of the phase
+  double dt = 0;           ///< step under way; halved on failure
+  double clock = 0;        ///< path parameter run through so far, over all phases; grows with every step
+  int steps = 0;           ///< accepted so far
+  int iterations = 0;      ///< Newton iterations so far, failed attempts included
+  int negative_modes = 0;  ///< at the last minimisation
+  bool closed = false;     ///< `chain` is of `ribbon`; before a loop closes it is of `cut`
   geometry::Chain chain;
   std::vector<double> multipliers;
-  std::vector<Pose> origin;        ///< one a support: the strip's own pose there when the approach began
-  std::vector<Quat> transported;   ///< one a support: the strip's own frame there at the last step
+  std::vector<Pose> origin;       ///< one a support: the strip's own pose there when the approach began
+  std::vector<Quat> transported;  ///< one a support: the strip's own frame there at the last step
 };
 
 struct PathStep {
   bool accepted = false;
-  int iterations = 0;              ///< of this step
-  NewtonReport newton;             ///< of the last minimisation
-  bool exhausted = false;          ///< a further attempt would fail as well: the step cannot be shortened any more
-  std::string failure;             ///< why it was not accepted: what, where, likely cause
+  int iterations = 0;      ///< of this step
+  NewtonReport newton;     ///< of the last minimisation
+  bool exhausted = false;  ///< a further attempt would fail as well: the step cannot be shortened any more
+  std::string failure;     ///< why it was not accepted: what, where, likely cause
 };
 
 PathProblem make_path(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings,

@@ -85,7 +85,7 @@ bool base_is_held(const PathProblem& path) {
 }
 
 double motion_between(const PathProblem& path, double t0, double t1) {
-  constexpr int kParts = 256;   // finer than half a turn each, so that the shorter rotation is the right one
+  constexpr int kParts = 256;  // finer than half a turn each, so that the shorter rotation is the right one
   double most = 0;
   for (const Support& support : path.surroundings.supports) {
     double sum = 0;

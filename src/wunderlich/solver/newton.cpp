@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "wunderlich/math/rotation.hpp"
 
@@ -15,8 +16,12 @@ namespace {
 
 /// How far |x| may move towards 1 in one step, as a share of the way.
 constexpr double kBoundaryFraction = 0.9;
-constexpr double kKick = 0.05;   // largest fold-angle change that leaves a saddle [rad]
-constexpr double kSaddleStep = 1e-7;
+constexpr double kKick = 0.05;  // largest fold-angle change that leaves a saddle [rad]
+constexpr int kMaxKicks = 20, kMaxUnshifted = 3;
+constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: stationary, but is it a minimum?
+constexpr double kStationaryShift = 1e-2;
+constexpr double kNeutral = 1e-7;  // eigenvalues below this (units of the shift) count as zero
+constexpr double kRounding = 1e-15;
 constexpr double kSmallestShift = 1e-9, kLargestShift = 1e6, kShiftFactor = 5;
 
 struct Iterate {
@@ -90,28 +95,46 @@ double max_abs(const std::vector<double>& values) {
   return most;
 }
 
-/// Solves with the smallest shift of the series that leaves no negative mode; false if none does.
-bool find_direction(const Ribbon& ribbon, NewtonWorkspace& work, NewtonReport& report, double& shift) {
+/// What a shift of 1 means: the bending energy of a segment in kappa, and D l/w in eta.
+Vec2 shift_units(const Ribbon& ribbon) {
   const double l = ribbon.length / ribbon.segments;
-  const double unit_kappa = ribbon.bending_stiffness * ribbon.width * l;
-  const double unit_eta = ribbon.bending_stiffness * l / ribbon.width;
+  return ribbon.bending_stiffness * l * Vec2(ribbon.width, 1 / ribbon.width);
+}
+
+/// Solves with the smallest shift of the series that leaves no negative mode; false if none does.
+bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& work, NewtonReport& report,
+                    double& shift) {
+  const Vec2 unit = shift_units(ribbon);
   shift = shift <= kSmallestShift ? 0 : shift / kShiftFactor;
   while (shift < kLargestShift) {
-    work.system.shift = {shift * unit_kappa, shift * unit_eta};
+    work.system.shift = {shift * unit[0], shift * unit[1]};
     ++report.sweeps;
     const bool solved = math::chain_step(work.system, work.sweep, work.step);
     if (shift == 0) report.negative_modes = work.step.negative_pivots;
-    if (solved && work.step.negative_pivots == 0) return true;
+    if (solved && (work.step.negative_pivots == 0 || !conservative)) return true;
     shift = shift == 0 ? 100 * kSmallestShift : kShiftFactor * shift;
   }
   return false;
 }
 
-/// Backtracks along the step on the merit function; leaves the accepted point in the trial buffers.
-bool line_search(const Iterate& at, const Chain& chain, double limit, NewtonReport& report) {
+/// The step as far as `scale`, whatever it does to the merit; false if the result is not finite.
+bool take_step(const Iterate& at, Chain& current, double scale, NewtonReport& report) {
   NewtonWorkspace& work = at.work;
-  const double start = at.merit_of(chain, work.kinematics, work.residuals);
-  const double slope = at.slope();
+  apply_step(current, work.step, scale, work.trial);
+  geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
+  ++report.evaluations;
+  if (!std::isfinite(objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics).total())) {
+    return false;
+  }
+  std::swap(current, work.trial);
+  std::swap(work.kinematics, work.trial_kinematics);
+  return true;
+}
+
+/// Backtracks along the step on the merit function; leaves the accepted point in the trial buffers.
+bool line_search(const Iterate& at, const Chain& chain, double start, double slope, double limit,
+                 NewtonReport& report) {
+  NewtonWorkspace& work = at.work;
   const double rounding = 1e-13 * (std::abs(start) + std::abs(slope));
   for (double scale = limit; scale > 1e-10; scale *= 0.5) {
     apply_step(chain, work.step, scale, work.trial);
@@ -123,40 +146,74 @@ bool line_search(const Iterate& at, const Chain& chain, double limit, NewtonRepo
   return false;
 }
 
-/// Pushes the iterate off a stationary point that is no minimum, along the softest direction of the shifted
-/// Hessian (inverse iteration from a fixed seed), downhill by the sign of the gradient left over.
-bool leave_saddle(const Iterate& at, Chain& current) {
-  NewtonWorkspace& work = at.work;
+/// The softest direction of the reduced Hessian, left in work.step with largest entry 1, and its eigenvalue in the
+/// units of the shift: inverse iteration on the shifted system from a fixed seed. NaN if the system is singular.
+double softest_mode(const Ribbon& ribbon, double shift, NewtonWorkspace& work) {
+  const auto unit = shift_units(ribbon);
   const std::size_t count = work.system.links.size();
   unsigned seed = 1;
   const auto noise = [&] { return static_cast<double>(seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };
   for (auto& row : work.system.rows) row.residual = 0;
-  for (int pass = 0; pass < 4; ++pass) {
+  work.system.pose_terms.clear();
+  double growth = 0;
+  for (int pass = 0; pass < 6; ++pass) {
     for (std::size_t i = 0; i < count; ++i) {
       auto& link = work.system.links[i];
+      const Vec2 u = pass == 0 ? Vec2(noise(), noise()) : work.step.u[i];
       link.force.setZero();
       link.grad_b.setZero();
-      link.grad_a = pass == 0 ? Vec2(noise(), noise()) : Vec2(work.step.u[i]);
-      if (!geometry::kappa_is_free(at.ribbon, static_cast<int>(i))) link.grad_a[0] = 0;
-      if (!geometry::eta_is_free(at.ribbon, static_cast<int>(i))) link.grad_a[1] = 0;
+      link.grad_a = -u.cwiseProduct(unit);
+      if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) link.grad_a[0] = 0;
+      if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) link.grad_a[1] = 0;
     }
-    work.system.pose_terms.clear();
-    if (!math::chain_step(work.system, work.sweep, work.step)) return false;
-    double largest = 0;
-    for (const Vec2& u : work.step.u) largest = std::max(largest, u.lpNorm<Eigen::Infinity>());
-    if (!(largest > 0)) return false;
-    for (Vec2& u : work.step.u) u /= largest;
-    work.step.base /= largest;
+    // The last node has no link of its own; its share enters through the link before it.
+    work.system.links[count - 2].grad_b = work.system.links[count - 1].grad_a;
+    if (!math::chain_step(work.system, work.sweep, work.step)) return std::numeric_limits<double>::quiet_NaN();
+    growth = 0;
+    for (const Vec2& u : work.step.u) growth = std::max(growth, u.lpNorm<Eigen::Infinity>());
+    if (!(growth > 0)) return std::numeric_limits<double>::quiet_NaN();
+    for (Vec2& u : work.step.u) u /= growth;
+    for (Vec3& v : work.step.v) v /= growth;
+    work.step.base /= growth;
   }
+  return 1 / growth - shift;
+}
+
+/// Moves the iterate along the direction in work.step, far enough to leave a saddle, little enough that the
+/// constraints, which hold along it to first order only, are not torn.
+void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
   double turn = 1e-12;
-  for (std::size_t i = 0; i < count; ++i) turn = std::max(turn, (work.system.links[i].axes * work.step.u[i]).norm());
+  for (std::size_t i = 0; i < work.step.u.size(); ++i) {
+    turn = std::max(
+        {turn, (work.system.links[i].axes * work.step.u[i]).norm(), 10 * work.step.v[i].norm() / ribbon.length});
+  }
   NewtonOptions small;
   small.max_turn = kKick;
-  const double scale = std::min(kKick / turn, step_limit(at.ribbon, small, current, work));
+  const double scale = std::min(kKick / turn, step_limit(ribbon, small, current, work));
   apply_step(current, work.step, scale, work.trial);
   std::swap(current, work.trial);
-  geometry::forward_kinematics(at.ribbon, current, work.kinematics);
-  return true;
+  geometry::forward_kinematics(ribbon, current, work.kinematics);
+}
+
+/// What a stationary iterate is: a minimum (also where the softest mode is neutral, as in sliding along a closed
+/// band), a saddle, or a point that needs its last steps without a shift. Where it looks for the softest mode it
+/// overwrites work.step.
+enum class Stationary { no, minimum, saddle, unshift };
+
+Stationary classify(const Ribbon& ribbon, const NewtonOptions& options, double shift, double slope, double merit,
+                    NewtonWorkspace& work, NewtonReport& report) {
+  if (max_abs(work.residuals) > options.tolerance || shift > kStationaryShift) return Stationary::no;
+  if (shift == 0 && report.last_step < options.tolerance) return Stationary::minimum;
+  const bool flat = -slope < kRounding * std::abs(merit);
+  if (!(shift > 0 && report.last_step < kSaddleStep) && !(shift == 0 && flat)) return Stationary::no;
+  const double eigenvalue = softest_mode(ribbon, shift, work);
+  if (std::abs(eigenvalue) < kNeutral) {
+    report.negative_modes = 0;
+    report.neutral = true;
+    return Stationary::minimum;
+  }
+  if (eigenvalue < 0) return Stationary::saddle;
+  return shift > 0 && report.unshifted++ < kMaxUnshifted ? Stationary::unshift : Stationary::minimum;
 }
 
 }  // namespace
@@ -170,33 +227,55 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const Iterate at{ribbon, problem, work};
   double shift = 0;
   geometry::forward_kinematics(ribbon, current, work.kinematics);
-  for (; report.iterations < options.max_iterations; ++report.iterations) {
+  const auto accept = [&] {
+    report.outcome = NewtonOutcome::converged;
+    chain = current;
+    multipliers = lambda;
+    return report;
+  };
+  while (report.iterations < options.max_iterations) {
+    ++report.iterations;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.system);
-    if (!find_direction(ribbon, work, report, shift)) {
+    if (!find_direction(ribbon, problem.loads.empty(), work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;
     }
     const double limit = step_limit(ribbon, options, current, work);
     report.last_step = step_size(ribbon, work);
-    if (shift > 0 && report.last_step < kSaddleStep && report.kicks < 20 && leave_saddle(at, current)) {
-      ++report.kicks;
+    constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
+    report.max_residual = max_abs(work.residuals);
+    if (!problem.loads.empty()) {
+      // Nothing to descend on: full Newton steps, as far as they are bounded.
+      if (limit == 1 && report.last_step < options.tolerance && report.max_residual < options.tolerance)
+        return accept();
+      if (!take_step(at, current, limit, report)) {
+        report.outcome = NewtonOutcome::line_search_failed;
+        return report;
+      }
+      lambda.assign(work.step.multiplier.begin() + static_cast<std::ptrdiff_t>(work.system.probe_count()),
+                    work.step.multiplier.end());
       continue;
     }
-    if (!line_search(at, current, limit, report)) {
+    const double merit = at.merit_of(current, work.kinematics, work.residuals);
+    const double slope = at.slope();
+    const Stationary kind = classify(ribbon, options, shift, slope, merit, work, report);
+    if (kind == Stationary::minimum) return accept();
+    if (kind == Stationary::unshift) {
+      shift = 0;
+      continue;
+    }
+    if (kind == Stationary::saddle && report.kicks < kMaxKicks) {
+      ++report.kicks;
+      kick(ribbon, current, work);
+      continue;
+    }
+    if (kind == Stationary::saddle || !line_search(at, current, merit, slope, limit, report)) {
       report.outcome = NewtonOutcome::line_search_failed;
       return report;
     }
     std::swap(current, work.trial);
     std::swap(work.kinematics, work.trial_kinematics);
     lambda = work.step.multiplier;
-    report.max_residual = max_abs(work.trial_residuals);
-    if (shift == 0 && limit == 1 && report.last_step < options.tolerance) {
-      ++report.iterations;
-      report.outcome = NewtonOutcome::converged;
-      chain = current;
-      multipliers = lambda;
-      return report;
-    }
   }
   return report;
 }

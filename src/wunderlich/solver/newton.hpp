@@ -8,26 +8,28 @@
 namespace wunderlich::solver {
 
 struct NewtonOptions {
-  double tolerance = 1e-10;        ///< on the step: fold angles [rad], displacements / length
+  double tolerance = 1e-10;  ///< on the step: fold angles [rad], displacements / length
   int max_iterations = 300;
-  double max_turn = 0.6;           ///< largest change of a fold angle in one iteration [rad]
+  double max_turn = 0.6;  ///< largest change of a fold angle in one iteration [rad]
 };
 
 enum class NewtonOutcome {
   converged,
   iteration_limit,
-  line_search_failed,      ///< no step along the direction lowers the merit
-  singular,                ///< no shift made the reduced Hessian positive
+  line_search_failed,  ///< no step along the direction lowers the merit
+  singular,            ///< no shift made the reduced Hessian positive
 };
 
 struct NewtonReport {
   NewtonOutcome outcome = NewtonOutcome::iteration_limit;
   int iterations = 0;
-  int sweeps = 0;                  ///< linear solves; more than iterations where shifts were needed
-  int evaluations = 0;             ///< objective evaluations in the line search
-  int kicks = 0;                   ///< times it left a stationary point that was no minimum
-  int negative_modes = 0;          ///< of the unshifted reduced Hessian where it stopped
-  double max_residual = 0;         ///< of the constraint rows (m, rad, 1)
+  int sweeps = 0;           ///< linear solves; more than iterations where shifts were needed
+  int evaluations = 0;      ///< objective evaluations in the line search
+  int kicks = 0;            ///< times it left a stationary point that was no minimum
+  int unshifted = 0;        ///< times a shift was dropped for the last steps
+  bool neutral = false;     ///< the softest mode has no stiffness to rounding: one of a family of minima
+  int negative_modes = 0;   ///< of the unshifted reduced Hessian where it stopped
+  double max_residual = 0;  ///< of the constraint rows (m, rad, 1)
   double last_step = 0;
   bool converged() const { return outcome == NewtonOutcome::converged; }
 };

@@ -1,0 +1,145 @@
+#include "wunderlich/solver/path_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wunderlich/solver/load_step.hpp"
+
+namespace wunderlich::solver {
+
+using geometry::Chain;
+using geometry::Kinematics;
+using geometry::Ribbon;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kPathBarrier = 1e-3;  // e1 on the way; the final state has the path's own
+constexpr double kSmallestStep = 1.0 / 1024;
+
+/// A flat strip between two held places can leave the plane either way, and its rulings are undetermined: a small
+/// bow and slope decide both.
+void seed(const Ribbon& ribbon, Chain& chain) {
+  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
+    const double phase = 2 * kPi * ribbon.node_u[i] / ribbon.length;
+    if (geometry::kappa_is_free(ribbon, static_cast<int>(i))) chain.kappa[i] = -0.3 / ribbon.length * std::cos(phase);
+    if (geometry::eta_is_free(ribbon, static_cast<int>(i))) chain.eta[i] = -0.1 * std::sin(phase);
+  }
+}
+
+bool is_flat(const Chain& chain) {
+  return std::all_of(chain.kappa.begin(), chain.kappa.end(), [](double k) { return k == 0; });
+}
+
+void note_origin(const PathProblem& path, PathState& state) {
+  Kinematics k;
+  geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
+  state.origin.clear();
+  for (const auto& support : path.surroundings.supports) {
+    const bool at_base = support.segment < 0 && support.node == 0;
+    const auto i = static_cast<std::size_t>(held_link(support));
+    state.origin.push_back({k.r[i], at_base ? state.chain.base.frame : k.q[i]});
+  }
+}
+
+}  // namespace
+
+Phase next_phase(const PathProblem& path, Phase phase) {
+  const bool alone = path.surroundings.supports.empty() && path.surroundings.loads.empty();
+  switch (phase) {
+    case Phase::bend:
+      return Phase::twist;
+    case Phase::twist:
+      return Phase::close;
+    case Phase::close:
+      return alone ? Phase::done : Phase::approach;
+    case Phase::approach:
+      return Phase::load;
+    case Phase::load:
+      return Phase::settle;
+    default:
+      return Phase::done;
+  }
+}
+
+void note_frames(const PathProblem& path, PathState& state) {
+  Kinematics k;
+  geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
+  state.transported.clear();
+  for (const auto& support : path.surroundings.supports) {
+    state.transported.push_back(k.q[static_cast<std::size_t>(held_link(support))]);
+  }
+}
+
+void enter(const PathProblem& path, Phase phase, PathState& state) {
+  state.phase = phase;
+  state.t = 0;
+  state.dt = 0;
+  if (phase == Phase::approach) note_origin(path, state);
+  note_frames(path, state);
+}
+
+std::string why(const NewtonReport& report, const PathState& state) {
+  std::string text = std::string(phase_name(state.phase)) + " at t = " + std::to_string(state.t) + ": ";
+  switch (report.outcome) {
+    case NewtonOutcome::iteration_limit:
+      return text + "no convergence in " + std::to_string(report.iterations) +
+             " iterations (solver.max_iterations); last step " + std::to_string(report.last_step);
+    case NewtonOutcome::line_search_failed:
+      return text + "no step lowers the energy; the supports probably ask for more than the strip can reach";
+    case NewtonOutcome::singular:
+      return text +
+             "the linear system is singular; supports may hold the same motion twice, or nothing holds the strip";
+    case NewtonOutcome::converged:
+      break;
+  }
+  return text;
+}
+
+NewtonOptions newton_options(const PathProblem& path) {
+  NewtonOptions options;
+  options.tolerance = path.options.tolerance;
+  options.max_iterations = path.options.max_iterations;
+  return options;
+}
+
+void shorten(PathState& state, double planned, PathStep& step) {
+  step.failure = why(step.newton, state);
+  state.dt *= 0.5;
+  step.exhausted = state.dt < kSmallestStep * planned;
+}
+
+bool solve_at(const PathProblem& path, PathState& state, double t, const Proximal& proximal, NewtonWorkspace& work,
+              PathStep& step) {
+  const Ribbon& ribbon = ribbon_of(path, state);
+  Chain chain = state.chain;
+  std::vector<double> multipliers = state.multipliers;
+  ChainProblem problem = problem_at(path, state, t, chain);
+  NewtonOptions options = newton_options(path);
+  if (proximal.passes > 0) {
+    if (is_flat(chain)) seed(ribbon, chain);
+    const double l = ribbon.length;
+    problem.barrier = std::max(problem.barrier, kPathBarrier);
+    problem.proximity = proximal.mass * ribbon.bending_stiffness * ribbon.width / (l * l * l * l);
+    options.tolerance = std::max(options.tolerance, 1e-7);
+    options.max_iterations = std::min(options.max_iterations, 200);
+  }
+  if (multipliers.size() != row_count(problem)) multipliers.assign(row_count(problem), 0.0);
+  Kinematics k;
+  for (int pass = 0; pass < std::max(1, proximal.passes); ++pass) {
+    if (proximal.passes > 0) {
+      geometry::forward_kinematics(ribbon, chain, k);
+      problem.anchor = k.r;
+    }
+    step.newton = minimise(ribbon, problem, options, chain, multipliers, work);
+    step.iterations += step.newton.iterations;
+    state.iterations += step.newton.iterations;
+    if (!step.newton.converged()) return false;
+  }
+  state.chain = chain;
+  state.multipliers = multipliers;
+  state.negative_modes = step.newton.negative_modes;
+  return true;
+}
+
+}  // namespace wunderlich::solver
