@@ -6,124 +6,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "wunderlich/math/chain_value.hpp"
+
 namespace wunderlich::math {
 
+using namespace chain;
+
 namespace {
-
-/// Columns kept on the stack for the usual constraint counts; 0 means "known at run time only".
-template <int M>
-struct Columns {
-  static constexpr int count = M == 0 ? Eigen::Dynamic : M;
-  static constexpr int order = M == 1 ? Eigen::ColMajor : Eigen::RowMajor;
-  using Block = Eigen::Matrix<double, 8, count, order>;
-  using Pair = Eigen::Matrix<double, 2, count, order>;
-  using Gram = Eigen::Matrix<double, count, count, order>;
-};
-
-/// Value function of everything beyond the joint under way, in (v, theta, u).
-struct Value {
-  Mat6 p = Mat6::Zero();                                                ///< pose, pose
-  Eigen::Matrix<double, 6, 2> y = Eigen::Matrix<double, 6, 2>::Zero();  ///< pose, u
-  Mat2 z = Mat2::Zero();                                                ///< u, u
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< adjoint wrench: the exact gradient in the pose
-  Vec2 gradient = Vec2::Zero();                      ///< exact gradient in u so far
-};
-
-int negative_count(const Mat2& z) {
-  const double det = z(0, 0) * z(1, 1) - z(0, 1) * z(1, 0);
-  if (det < 0) return 1;
-  return z(0, 0) + z(1, 1) < 0 ? 2 : 0;
-}
-
-bool invert(const Mat2& z, Mat2& inverse) {
-  const double det = z(0, 0) * z(1, 1) - z(0, 1) * z(1, 0);
-  if (det == 0 || !std::isfinite(det)) return false;
-  const double f = 1 / det;
-  inverse << f * z(1, 1), -f * z(0, 1), -f * z(1, 0), f * z(0, 0);
-  return true;
-}
-
-/// Where the sorted lists of pose terms, probe rows and constraint rows stand.
-struct Cursor {
-  std::size_t term, probe, row;
-};
-
-/// A pose term's or row's share at its link; row k is column k + 1.
-template <class Block>
-void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Block& columns) {
-  for (; next.term < system.pose_terms.size() && system.pose_terms[next.term].node == node; ++next.term) {
-    const PoseTerm& term = system.pose_terms[next.term];
-    value.p += term.hessian;
-    columns.col(0).template head<6>() += term.gradient;
-    value.force += term.gradient.head<3>();
-    value.torque += term.gradient.tail<3>();
-  }
-  const auto take = [&](std::size_t index) {
-    const ChainRow& row = system.rows[index];
-    Vec6 pose;
-    pose << row.v, row.theta;
-    const auto k = static_cast<Eigen::Index>(index) + 1;
-    columns.col(k).template head<6>() = pose;
-    columns.col(k).template tail<2>() = row.u;
-    value.p += row.penalty * pose * pose.transpose();
-    columns.col(0).template head<6>() += row.penalty * row.residual * pose;
-    value.force += row.multiplier * row.v;
-    value.torque += row.multiplier * row.theta;
-    value.gradient += row.multiplier * row.u;
-  };
-  const std::size_t probes = system.probe_count();
-  while (next.probe < probes && system.rows[next.probe].node == node) take(next.probe++);
-  while (next.row < system.rows.size() && system.rows[next.row].node == node) take(next.row++);
-}
-
-/// theta_i = theta_{i-1} + axes u, and the joint's second-order terms.
-template <class Block>
-void pass_joint(const ChainLink& link, bool geometric, Value& value, Block& columns) {
-  const Mat32& b = link.axes;
-  value.gradient.noalias() += b.transpose() * value.torque;
-  columns.template bottomRows<2>() += (b.transpose() * columns.template middleRows<3>(3)).eval();
-  const Eigen::Matrix<double, 6, 2> pb = value.p.template rightCols<3>() * b;
-  const Mat2 by = b.transpose() * value.y.template bottomRows<3>();
-  value.z += by + by.transpose();
-  value.z.noalias() += b.transpose() * pb.template bottomRows<3>();
-  value.y += pb;
-  if (geometric) {
-    const double z01 = value.torque.dot(link.axes_01);
-    value.z(0, 1) += z01;
-    value.z(1, 0) += z01;
-    value.z(1, 1) += value.torque.dot(link.axes_11);
-    value.y.template bottomRows<3>().col(0) += 0.5 * b.col(0).cross(value.torque);
-    value.y.template bottomRows<3>().col(1) += 0.5 * b.col(1).cross(value.torque);
-  }
-}
-
-/// v_i = v_{i-1} + theta x span, to second order.
-template <class Block>
-void pass_span(const Vec3& d, bool geometric, Value& value, Block& columns) {
-  // Congruence with [I X; 0 I], X = -[d]x: first the right factor on every row, then the left one on every column.
-  for (int i = 0; i < 6; ++i) {
-    const Vec3 row = value.p.template block<1, 3>(i, 0).transpose();
-    value.p.template block<1, 3>(i, 3) += d.cross(row).transpose();
-  }
-  for (int j = 0; j < 6; ++j) {
-    const Vec3 column = value.p.template block<3, 1>(0, j);
-    value.p.template block<3, 1>(3, j) += d.cross(column);
-  }
-  for (int j = 0; j < 2; ++j) {
-    const Vec3 column = value.y.template block<3, 1>(0, j);
-    value.y.template block<3, 1>(3, j) += d.cross(column);
-  }
-  const auto v0 = columns.row(0).eval(), v1 = columns.row(1).eval(), v2 = columns.row(2).eval();
-  columns.row(3) += d[1] * v2 - d[2] * v1;
-  columns.row(4) += d[2] * v0 - d[0] * v2;
-  columns.row(5) += d[0] * v1 - d[1] * v0;
-  if (geometric) {
-    const Mat3 outer = d * value.force.transpose();
-    value.p.template block<3, 3>(3, 3) += 0.5 * (outer + outer.transpose());
-    value.p.template block<3, 3>(3, 3).diagonal().array() -= value.force.dot(d);
-  }
-  value.torque += d.cross(value.force);
-}
 
 /// Loads without a potential: their rows are probes y = row . x with multiplier follower * y, solved together with
 /// the constraints. The probes come first.
@@ -204,14 +93,11 @@ bool eliminate_base(const ChainSystem& system, const Mat6& p, Mat6& inverse, int
 
 template <int M>
 class Sweep {
-  using Block = typename Columns<M>::Block;
-  using Pair = typename Columns<M>::Pair;
-  using Gram = typename Columns<M>::Gram;
+  using Gram = typename GramOf<M>::Type;
 
  public:
   Sweep(const ChainSystem& system, ChainWorkspace& work)
-      : system_(system), work_(work), m_(static_cast<Eigen::Index>(system.rows.size()) + 1) {
-    columns_.setZero(8, m_);
+      : system_(system), work_(work), m_(static_cast<int>(system.rows.size()) + 1), columns_(m_) {
     gram_.setZero(m_, m_);
   }
 
@@ -223,9 +109,7 @@ class Sweep {
       const auto k = static_cast<std::size_t>(i);
       const ChainLink& link = system_.links[k];
       add_pose_parts(system_, i, next, value_, columns_);
-      value_.p.diagonal().template head<3>().array() += link.stiffness;
-      columns_.col(0).template head<3>() += link.force;
-      value_.force += link.force;
+      add_node(link, value_, columns_.row(0), columns_.row(1), columns_.row(2));
       work_.force[k] = value_.force;
       work_.torque[k] = value_.torque;
       pass_joint(link, system_.geometric, value_, columns_);
@@ -237,16 +121,19 @@ class Sweep {
   }
 
   void forward(ChainStep& step) const {
-    Eigen::Matrix<double, M == 0 ? Eigen::Dynamic : M, 1> weights(m_);
-    weights[0] = 1;
-    for (Eigen::Index k = 1; k < m_; ++k) weights[k] = step.multiplier[static_cast<std::size_t>(k - 1)];
-    step.base = -(base_inverse_ * (columns_.template topRows<6>() * weights));
+    step.base = -(base_inverse_ * base_load(step));
     Vec6 pose = step.base;
     Vec2 previous = Vec2::Zero();
     const std::size_t count = system_.links.size();
     for (std::size_t i = 0; i < count; ++i) {
       const ChainLink& link = system_.links[i];
-      const Vec2 u = -(gain_columns(i) * weights + work_.gains[i].pose * pose + work_.gains[i].previous * previous);
+      const double *g0 = gain_columns(i), *g1 = g0 + m_;
+      Vec2 u(g0[0], g1[0]);
+      for (int k = 1; k < m_; ++k) {
+        const double weight = step.multiplier[static_cast<std::size_t>(k - 1)];
+        u += weight * Vec2(g0[k], g1[k]);
+      }
+      u = -(u + work_.gains[i].pose * pose + work_.gains[i].previous * previous);
       step.v[i] = pose.head<3>();
       step.u[i] = u;
       pose.tail<3>() += link.axes * u;
@@ -258,76 +145,121 @@ class Sweep {
   bool multipliers(ChainStep& step) const { return solve_multipliers(system_, gram_, step); }
 
  private:
-  Eigen::Map<Pair> gain_columns(std::size_t i) const {
-    return Eigen::Map<Pair>(work_.columns.data() + i * 2 * static_cast<std::size_t>(m_), 2, m_);
+  double* gain_columns(std::size_t i) const { return work_.columns.data() + i * 2 * static_cast<std::size_t>(m_); }
+
+  Vec6 base_load(const ChainStep& step) const {
+    Vec6 load;
+    for (int i = 0; i < 6; ++i) {
+      load[i] = columns_.row(i)[0];
+      for (int k = 1; k < m_; ++k) load[i] += columns_.row(i)[k] * step.multiplier[static_cast<std::size_t>(k - 1)];
+    }
+    return load;
   }
 
   void add_first_u() {
     for (std::size_t k = 0; k < system_.rows.size(); ++k) {
-      columns_.col(static_cast<Eigen::Index>(k) + 1).template tail<2>() += system_.rows[k].first_u;
-      value_.gradient += system_.rows[k].multiplier * system_.rows[k].first_u;
+      const ChainRow& row = system_.rows[k];
+      columns_.row(6)[k + 1] += row.first_u[0];
+      columns_.row(7)[k + 1] += row.first_u[1];
+      value_.gradient += row.multiplier * row.first_u;
     }
   }
 
   /// Takes in the energy of link i - 1 and eliminates u_i; what is left depends on u_{i-1}.
   bool eliminate(int i, ChainStep& step) {
-    const auto k = static_cast<std::size_t>(i);
-    const ChainLink* before = i > 0 ? &system_.links[k - 1] : nullptr;
+    const auto index = static_cast<std::size_t>(i);
+    const ChainLink* before = i > 0 ? &system_.links[index - 1] : nullptr;
+    double *z0 = columns_.row(6), *z1 = columns_.row(7);
     if (before) {
       value_.z += before->hess_bb;
-      columns_.col(0).template tail<2>() += before->grad_b;
+      z0[0] += before->grad_b[0];
+      z1[0] += before->grad_b[1];
       value_.gradient += before->grad_b;
     }
     value_.z(0, 0) += system_.shift[0];
     value_.z(1, 1) += system_.shift[1];
-    work_.gradient[k] = value_.gradient;
+    work_.gradient[index] = value_.gradient;
     Mat2 inverse;
     if (!invert(value_.z, inverse)) return false;
     step.negative_pivots += negative_count(value_.z);
 
-    const Eigen::Matrix<double, 6, 2> yz = value_.y * inverse;
-    const Pair zc = columns_.template bottomRows<2>();
-    auto solved = gain_columns(k);
-    solved.noalias() = inverse * zc;
-    gram_.noalias() += zc.transpose() * solved;
-    columns_.template topRows<6>().noalias() -= yz * zc;
-    value_.p.noalias() -= yz * value_.y.transpose();
-    ChainGain& gain = work_.gains[k];
-    gain.pose = yz.transpose();
-    if (before) {
-      const Mat2& c = before->hess_ab;
-      gain.previous.noalias() = inverse * c.transpose();
-      value_.y = -(yz * c.transpose());
-      value_.z = before->hess_aa - c * gain.previous;
-      columns_.template bottomRows<2>().noalias() = -(c * solved);
-      columns_.col(0).template tail<2>() += before->grad_a;
-      value_.gradient = before->grad_a;
-    } else {
-      gain.previous.setZero();
+    double* solved = gain_columns(index);
+    reduce_columns(inverse, z0, z1, solved);
+    Eigen::Matrix<double, 2, 6>& gain = work_.gains[index].pose;
+    reduce_pose(inverse, z0, z1, gain);
+    if (!before) {
+      work_.gains[index].previous.setZero();
+      return true;
     }
+    const Mat2& c = before->hess_ab;
+    const Mat2 previous = inverse * c.transpose();
+    work_.gains[index].previous = previous;
+    value_.z = before->hess_aa - c * previous;
+    for (int r = 0; r < 6; ++r) {
+      const double y0 = gain(0, r), y1 = gain(1, r);
+      value_.y[r][0] = -(y0 * c(0, 0) + y1 * c(0, 1));
+      value_.y[r][1] = -(y0 * c(1, 0) + y1 * c(1, 1));
+    }
+    for (int k = 0; k < columns_.count(); ++k) {
+      const double s0 = solved[k], s1 = solved[m_ + k];
+      z0[k] = -(c(0, 0) * s0 + c(0, 1) * s1);
+      z1[k] = -(c(1, 0) * s0 + c(1, 1) * s1);
+    }
+    z0[0] += before->grad_a[0];
+    z1[0] += before->grad_a[1];
+    value_.gradient = before->grad_a;
     return true;
+  }
+
+  /// Z^-1 times the columns, and their Gram matrix.
+  void reduce_columns(const Mat2& inverse, const double* z0, const double* z1, double* solved) {
+    const int m = columns_.count();
+    for (int k = 0; k < m; ++k) {
+      solved[k] = inverse(0, 0) * z0[k] + inverse(0, 1) * z1[k];
+      solved[m + k] = inverse(1, 0) * z0[k] + inverse(1, 1) * z1[k];
+    }
+    for (int a = 0; a < m; ++a) {
+      double* row = gram_.data() + a * m;
+      for (int b = 0; b < m; ++b) row[b] += z0[a] * solved[b] + z1[a] * solved[m + b];
+    }
+  }
+
+  /// P -= Y Z^-1 Y^T and the pose rows of the columns -= Y Z^-1 z; leaves (Y Z^-1)^T in `gain`.
+  void reduce_pose(const Mat2& inverse, const double* z0, const double* z1, Eigen::Matrix<double, 2, 6>& gain) {
+    for (int r = 0; r < 6; ++r) {
+      const double y0 = value_.y[r][0], y1 = value_.y[r][1];
+      const double g0 = y0 * inverse(0, 0) + y1 * inverse(1, 0), g1 = y0 * inverse(0, 1) + y1 * inverse(1, 1);
+      gain(0, r) = g0;
+      gain(1, r) = g1;
+      for (int c = 0; c < 6; ++c) value_.p[r][c] -= g0 * value_.y[c][0] + g1 * value_.y[c][1];
+      double* row = columns_.row(r);
+      for (int k = 0; k < columns_.count(); ++k) row[k] -= g0 * z0[k] + g1 * z1[k];
+    }
   }
 
   bool finish_base(ChainStep& step) {
     work_.base_gradient << value_.force, value_.torque;
     for (std::size_t k = 0; k < system_.rows.size(); ++k) {
-      auto column = columns_.col(static_cast<Eigen::Index>(k) + 1);
-      column.template head<3>() += system_.rows[k].base_v;
-      column.template segment<3>(3) += system_.rows[k].base_theta;
-      work_.base_gradient.head<3>() += system_.rows[k].multiplier * system_.rows[k].base_v;
-      work_.base_gradient.tail<3>() += system_.rows[k].multiplier * system_.rows[k].base_theta;
+      const ChainRow& row = system_.rows[k];
+      for (int i = 0; i < 3; ++i) {
+        columns_.row(i)[k + 1] += row.base_v[i];
+        columns_.row(3 + i)[k + 1] += row.base_theta[i];
+      }
+      work_.base_gradient.head<3>() += row.multiplier * row.base_v;
+      work_.base_gradient.tail<3>() += row.multiplier * row.base_theta;
     }
-    if (!eliminate_base(system_, value_.p, base_inverse_, step.negative_pivots)) return false;
-    const auto top = columns_.template topRows<6>();
+    const Mat6 p = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&value_.p[0][0]);
+    if (!eliminate_base(system_, p, base_inverse_, step.negative_pivots)) return false;
+    const Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>> top(columns_.row(0), 6, m_);
     gram_ += top.transpose() * base_inverse_ * top;
     return true;
   }
 
   const ChainSystem& system_;
   ChainWorkspace& work_;
-  Eigen::Index m_;
+  int m_;
   Value value_;
-  Block columns_;
+  Columns<M> columns_;
   Gram gram_;
   Mat6 base_inverse_;
 };
