@@ -22,14 +22,15 @@ inline Bending bending(StrainMeasure measure, double h, double kappa, double eta
   if (h == 0) return {};
   // (2/h) sin(a/2) s with a = h kappa s, s = sqrt(1 + eta^2)
   const double s = fold.s, sine = fold.half_sin, cosine = fold.half_cos, i = eta / s, c = 2 / h;
-  const double half_eta = 0.5 * h * kappa * i;                     // d(a/2)/d(eta)
+  const double half_eta = 0.5 * h * kappa * i;  // d(a/2)/d(eta)
   Bending b;
   b.value = c * sine * s;
   b.kappa = cosine * fold.s2;
   b.eta = c * (cosine * half_eta * s + sine * i);
   b.kappa_kappa = -0.5 * h * sine * s * fold.s2;
   b.kappa_eta = 2 * eta * cosine - sine * half_eta * fold.s2;
-  b.eta_eta = c * (-sine * half_eta * half_eta * s + 2 * cosine * half_eta * i + (cosine * 0.5 * h * kappa + sine / s) / fold.s2);
+  b.eta_eta = c * (-sine * half_eta * half_eta * s + 2 * cosine * half_eta * i +
+                   (cosine * 0.5 * h * kappa + sine / s) / fold.s2);
   return b;
 }
 

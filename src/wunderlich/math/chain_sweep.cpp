@@ -248,7 +248,9 @@ class Sweep {
       work_.base_gradient.head<3>() += row.multiplier * row.base_v;
       work_.base_gradient.tail<3>() += row.multiplier * row.base_theta;
     }
-    const Mat6 p = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&value_.p[0][0]);
+    Mat6 p = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&value_.p[0][0]);
+    p.diagonal().head<3>().array() += system_.base_shift[0];
+    p.diagonal().tail<3>().array() += system_.base_shift[1];
     if (!eliminate_base(system_, p, base_inverse_, step.negative_pivots)) return false;
     const Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>> top(columns_.row(0), 6, m_);
     gram_ += top.transpose() * base_inverse_ * top;

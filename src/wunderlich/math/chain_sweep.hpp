@@ -61,6 +61,7 @@ struct ChainSystem {
   Eigen::MatrixXd follower;          ///< (probes x probes) unsymmetric part of the Hessian, in the
                                      ///< coordinates of as many probe rows: loads without a potential
   std::array<bool, 6> base_fixed{};  ///< v (3), theta (3) of the base
+  std::array<double, 2> base_shift{};             ///< added to the diagonal of the base: position, rotation
   std::array<double, 2> shift{};     ///< added to the diagonal of every 2 x 2 pivot
   std::size_t probe_count() const { return static_cast<std::size_t>(follower.rows()); }
   bool geometric = true;  ///< false: leave out the terms that carry forces

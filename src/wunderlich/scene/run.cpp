@@ -189,6 +189,16 @@ struct Run {
   }
 };
 
+/// A closed band keeps its linking number unless it passes through itself, which nothing here prevents.
+std::string lost_turns(const PathProblem& path, const PathState& state, const State& shape) {
+  if (!path.ribbon.is_loop() || solver::is_planar(path)) return "";
+  const double wanted = 0.5 * path.ribbon.half_twists;
+  const double link = geometry::topology(solver::ribbon_of(path, state), shape).link;
+  if (std::abs(link - wanted) < 0.1) return "";
+  return "the band closed with linking number " + std::to_string(link) + " instead of " + std::to_string(wanted) +
+         ": it passed through itself on the way (contact is not modelled)";
+}
+
 }  // namespace
 
 RunResult run(const Scene& scene, const Observer& observer, const Progress* resume) {
@@ -202,6 +212,10 @@ RunResult run(const Scene& scene, const Observer& observer, const Progress* resu
   }
   RunResult result;
   result.outcome = run.go(observer);
+  if (result.outcome == Outcome::converged) {
+    run.failure = lost_turns(run.path, run.state, run.progress.records.back().state);
+    if (!run.failure.empty()) result.outcome = Outcome::not_converged;
+  }
   result.summary = summarise(scene, run.path, run.state, run.progress, result.outcome, run.work);
   result.summary.failure = result.outcome == Outcome::not_converged ? run.failure : "";
   result.summary.timing = run.timing;

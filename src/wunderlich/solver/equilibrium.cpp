@@ -152,7 +152,7 @@ PathState start_path(const PathProblem& path) {
     const constraint::Support& first = path.surroundings.supports.front();
     const Pose pose = constraint::pose_at(first.motion, 0);
     if (first.orientation != constraint::Orientation::free) base.frame = pose.frame;
-    const double u = path.ribbon.node_u[static_cast<std::size_t>(held_link(first))];
+    const double u = path.ribbon.node_u[static_cast<std::size_t>(first.node)];
     base.position = pose.position - u * (base.frame * Vec3::UnitZ());
   }
   PathState state;

@@ -78,6 +78,9 @@ PathState start_path(const PathProblem& problem);
 /// One accepted step further, or a failure that leaves `state` as it was (but for its iteration count).
 PathStep advance(const PathProblem& problem, PathState& state, NewtonWorkspace& work);
 
+/// Does the loop's path stay in the plane until it closes.
+bool is_planar(const PathProblem& problem);
+
 /// Rough share of the path that is done, for progress.
 double fraction_done(const PathProblem& problem, const PathState& state);
 

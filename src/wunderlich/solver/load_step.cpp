@@ -45,6 +45,18 @@ Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index,
   return hold;
 }
 
+/// A support's rows: position at its node, frame at its link; apart where these differ (the end of the last segment).
+void add_holds(const Support& support, Hold hold, ChainProblem& problem) {
+  if (support.node != hold.node) {
+    Hold position = hold;
+    position.node = support.node;
+    position.orientation = Orientation::free;
+    problem.holds.push_back(position);
+    hold.position.fill(false);
+  }
+  problem.holds.push_back(hold);
+}
+
 void fix_base(const Support& support, const Pose& pose, ChainProblem& problem, Chain& chain) {
   for (int c = 0; c < 3; ++c) {
     const bool held = support.hold_position[static_cast<std::size_t>(c)];
@@ -114,7 +126,7 @@ ChainProblem problem_at(const PathProblem& path, const PathState& state, double 
     if (is_base(ribbon, supports[i])) {
       fix_base(supports[i], pose_of(path, state, i, t), problem, chain);
     } else {
-      problem.holds.push_back(hold_at(path, state, i, t));
+      add_holds(supports[i], hold_at(path, state, i, t), problem);
     }
   }
   std::stable_sort(problem.holds.begin(), problem.holds.end(),

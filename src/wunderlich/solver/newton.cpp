@@ -107,6 +107,9 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
   const Vec2 unit = shift_units(ribbon);
   shift = shift <= kSmallestShift ? 0 : shift / kShiftFactor;
   while (shift < kLargestShift) {
+    // The base too: a strip that hangs on one pin may turn about the vertical freely.
+    const double base = shift * ribbon.bending_stiffness * ribbon.width / ribbon.length;
+    work.system.base_shift = {base / (ribbon.length * ribbon.length), base};
     work.system.shift = {shift * unit[0], shift * unit[1]};
     ++report.sweeps;
     const bool solved = math::chain_step(work.system, work.sweep, work.step);

@@ -38,7 +38,7 @@ void note_origin(const PathProblem& path, PathState& state) {
   for (const auto& support : path.surroundings.supports) {
     const bool at_base = support.segment < 0 && support.node == 0;
     const auto i = static_cast<std::size_t>(held_link(support));
-    state.origin.push_back({k.r[i], at_base ? state.chain.base.frame : k.q[i]});
+    state.origin.push_back({k.r[static_cast<std::size_t>(support.node)], at_base ? state.chain.base.frame : k.q[i]});
   }
 }
 

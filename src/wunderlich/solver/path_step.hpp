@@ -29,7 +29,6 @@ bool solve_at(const PathProblem& path, PathState& state, double t, const Proxima
               PathStep& step);
 
 /// The phases that make a loop of the flat strip.
-bool is_planar(const PathProblem& path);
 PathStep bend_step(const PathProblem& path, PathState& state);
 PathStep twist_step(const PathProblem& path, PathState& state, NewtonWorkspace& work);
 PathStep close_step(const PathProblem& path, PathState& state, NewtonWorkspace& work);
