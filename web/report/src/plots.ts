@@ -88,10 +88,7 @@ export function createProfiles(run: Run, onHover: (node: number | null) => void)
       axes: axes('u / l', unit ? `${symbol}  [${unit}]` : symbol),
       series: [{ label: 'u/l', value: (_p, v) => (v === null ? '–' : number(v, 3)) },
         series(`${symbol}, ${text}`, `--${name}`)],
-      plugins: [
-        verticals(() => [], '--line'),
-        ...(name === 'kappa' ? [verticals(() => (atEnd ? run.summary.kappa_zeros : []), '--quiet', [3, 4])] : []),
-      ],
+      plugins: name === 'kappa' ? [verticals(() => (atEnd ? run.summary.kappa_zeros : []), '--quiet', [3, 4])] : [],
       hooks: { setCursor: [(plot) => onHover(plot.cursor.idx ?? null)] },
     }, [u, Array.from(run.frames[run.frames.length - 1].fields[name])], 190);
   });

@@ -4,6 +4,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { RoomEnvironment } from 'three/examples/jsm/environments/RoomEnvironment.js';
 import { diverging, fieldRange } from './colour';
 import { isOneSided, type FieldName, type Frame, type Run } from './data';
+import { bestView, fitsOf, frameAll, type Fit } from './framing';
 
 export type Colour = 'none' | FieldName;
 
@@ -20,29 +21,7 @@ export interface Viewer {
   setTheme(dark: boolean): void;
 }
 
-interface Fit { centre: THREE.Vector3; radius: number; floor: number }
-
 const paint = { front: 0xc65a34, back: 0xe9c9a1 };
-
-function fitOf(points: Float32Array[]): Fit {
-  const box = new THREE.Box3();
-  const p = new THREE.Vector3();
-  for (const list of points) for (let i = 0; i < list.length; i += 3) box.expandByPoint(p.fromArray(list, i));
-  const centre = box.getCenter(new THREE.Vector3());
-  let radius = 0;
-  for (const list of points) {
-    for (let i = 0; i < list.length; i += 3) radius = Math.max(radius, p.fromArray(list, i).distanceTo(centre));
-  }
-  return { centre, radius: radius || 1, floor: box.min.z };
-}
-
-/** One fit for the whole run where that shows the last state well; else the view follows the ribbon. */
-function fitsOf(frames: Frame[]): Fit[] {
-  const last = fitOf([frames[frames.length - 1].points]);
-  const whole = fitOf(frames.map((frame) => frame.points));
-  if (whole.radius <= 1.7 * last.radius) return frames.map(() => whole);
-  return frames.map((frame) => fitOf([frame.points]));
-}
 
 /** Edges that belong to one triangle only, as pairs of points: the rims and the ends. */
 function boundary(triangles: Uint32Array): Uint32Array {
@@ -169,9 +148,11 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
   const camera = new THREE.PerspectiveCamera(32, 1, 0.05, 50);
   camera.up.set(0, 0, 1);
   const controls = createControls(camera, renderer.domElement);
-  controls.addEventListener('start', onFirstDrag);
+  let untouched = true;   // until then the view is fitted anew when the page changes its size
+  controls.addEventListener('start', () => { untouched = false; onFirstDrag(); });
 
   const fits = fitsOf(run.frames);
+  const usualView = bestView(run.frames[run.frames.length - 1]);
   const weights = nodeWeights(run);
   let position = run.frames.length - 1;
   let colour: Colour = 'none';
@@ -248,14 +229,14 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
   }
 
   function resetView() {
-    const portrait = Math.min(1, camera.aspect);
-    camera.position.set(1.5, -2.7, 1.75).multiplyScalar(1.12 / portrait);
-    controls.target.set(0, 0, -0.03);
+    untouched = true;
+    controls.target.copy(frameAll(camera, usualView, run.frames, fits));
     controls.update();
     request();
   }
 
   function turn(right: number, up: number) {
+    untouched = false;
     const offset = camera.position.clone().sub(controls.target);
     const polar = new THREE.Spherical().setFromCartesianCoords(offset.x, offset.z, -offset.y);   // z up to y up
     polar.theta += right;
@@ -269,12 +250,10 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
   new ResizeObserver(() => {
     const { clientWidth, clientHeight } = host;
     if (!clientWidth || !clientHeight) return;
-    const first = camera.userData.sized !== true;
-    camera.userData.sized = true;
     camera.aspect = clientWidth / clientHeight;
     camera.updateProjectionMatrix();
     renderer.setSize(clientWidth, clientHeight);
-    if (first) resetView();
+    if (untouched) resetView();
     request();
   }).observe(host);
 
@@ -290,6 +269,7 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
     resetView,
     turn,
     zoom(factor) {
+      untouched = false;
       camera.position.sub(controls.target).multiplyScalar(factor).add(controls.target);
       controls.update();
       request();
