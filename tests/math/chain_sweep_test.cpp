@@ -98,7 +98,8 @@ void expect_same(const ChainSystem& system, const DenseStep& dense, double toler
   math::ChainStep step;
   ASSERT_TRUE(chain_step(system, work, step));
   const VectorXd x = stacked(step);
-  const VectorXd multiplier = Eigen::Map<const VectorXd>(step.multiplier.data(), dense.multiplier.size());
+  const VectorXd multiplier =
+      Eigen::Map<const VectorXd>(step.multiplier.data() + system.probe_count(), dense.multiplier.size());
   EXPECT_GT(dense.x.norm(), 0);
   EXPECT_LE((x - dense.x).norm(), tolerance * (1 + dense.x.norm()));
   EXPECT_LE((multiplier - dense.multiplier).norm(), tolerance * (1 + dense.multiplier.norm()));
@@ -134,6 +135,28 @@ TEST(ChainSweep, ManyRows) {
   ChainSystem system = random_system(12, kFloating, 0.5, random);
   add_random_rows(20, random, system);
   expect_same(system, solve(dense_chain(system)), 1e-10);
+}
+
+TEST(ChainSweep, LoadsWithoutAPotential) {
+  Random random{std::mt19937(7), {}};
+  for (int rows : {0, 6}) {
+    for (const auto& base : {kHeld, kFloating}) {
+      ChainSystem system = random_system(5, base, 0, random);
+      std::vector<ChainRow> probes(6);
+      for (int k = 0; k < 6; ++k) {
+        auto& probe = probes[static_cast<std::size_t>(k)];
+        probe.node = k < 3 ? 5 : 2;
+        probe.v = random.vector();
+        probe.theta = random.vector();
+      }
+      add_random_rows(rows, random, system);
+      system.rows.insert(system.rows.begin(), probes.begin(), probes.end());
+      system.follower = MatrixXd::NullaryExpr(6, 6, [&] { return random(); });
+      const DenseChain dense = dense_chain(system);
+      EXPECT_GT((dense.follower - dense.follower.transpose()).norm(), 0.1);
+      expect_same(system, solve(dense), 1e-10);
+    }
+  }
 }
 
 TEST(ChainSweep, NodeDisplacementsFollowTheStep) {

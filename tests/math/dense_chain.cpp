@@ -42,6 +42,7 @@ void add_links(const ChainSystem& system, DenseChain& out) {
 }
 
 void add_rows(const ChainSystem& system, const std::vector<MatrixXd>& poses, DenseChain& out) {
+  MatrixXd probe(static_cast<Index>(system.probe_count()), out.gradient.size());
   for (std::size_t k = 0; k < system.rows.size(); ++k) {
     const math::ChainRow& row = system.rows[k];
     math::Vec6 weight;
@@ -52,11 +53,13 @@ void add_rows(const ChainSystem& system, const std::vector<MatrixXd>& poses, Den
     line.head<3>() += row.base_v;
     line.segment<3>(3) += row.base_theta;
     line.segment<2>(6) += row.first_u;
-    out.jacobian.row(static_cast<Index>(k)) = line.transpose();
-    out.residual[static_cast<Index>(k)] = row.residual;
+    const auto at = static_cast<Index>(k), probes = static_cast<Index>(system.probe_count());
+    (at < probes ? probe.row(at) : out.jacobian.row(at - probes)) = line.transpose();
+    if (at >= probes) out.residual[at - probes] = row.residual;
     out.hessian += row.penalty * seen * seen.transpose();
     out.gradient += row.penalty * row.residual * seen;
   }
+  out.follower = probe.transpose() * system.follower * probe;
 }
 
 MatrixXd columns(const MatrixXd& matrix, const std::vector<Index>& which) {
@@ -68,8 +71,9 @@ MatrixXd columns(const MatrixXd& matrix, const std::vector<Index>& which) {
 }  // namespace
 
 DenseChain dense_chain(const ChainSystem& system) {
-  const Index size = 6 + 2 * static_cast<Index>(system.links.size()), m = static_cast<Index>(system.rows.size());
-  DenseChain out{MatrixXd::Zero(size, size), VectorXd::Zero(size), MatrixXd::Zero(m, size), VectorXd::Zero(m), {}};
+  const Index size = 6 + 2 * static_cast<Index>(system.links.size()),
+              m = static_cast<Index>(system.rows.size() - system.probe_count());
+  DenseChain out{MatrixXd::Zero(size, size), {}, VectorXd::Zero(size), MatrixXd::Zero(m, size), VectorXd::Zero(m), {}};
   const std::vector<MatrixXd> poses = pose_maps(system, size);
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     const MatrixXd v = poses[i].topRows<3>();
@@ -93,9 +97,10 @@ DenseStep solve(const DenseChain& chain) {
   const Index m = chain.residual.size(), size = static_cast<Index>(chain.free.size());
   const MatrixXd a = columns(chain.jacobian, chain.free);
   const MatrixXd h = columns(columns(chain.hessian, chain.free).transpose(), chain.free);
+  const MatrixXd follower = columns(columns(chain.follower, chain.free).transpose(), chain.free).transpose();
   const VectorXd g = columns(chain.gradient.transpose(), chain.free).transpose();
   MatrixXd kkt = MatrixXd::Zero(size + m, size + m);
-  kkt << h, a.transpose(), a, MatrixXd::Zero(m, m);
+  kkt << h + follower, a.transpose(), a, MatrixXd::Zero(m, m);
   VectorXd right(size + m);
   right << -g, -chain.residual;
   const VectorXd solved = kkt.fullPivLu().solve(right);

@@ -10,9 +10,10 @@ namespace wunderlich::testing {
 
 /// Unknowns x = (v_0, theta_base, u_0, ..., u_N).
 struct DenseChain {
-  Eigen::MatrixXd hessian;  ///< without what carries forces
+  Eigen::MatrixXd hessian;   ///< without what carries forces, and without followers
+  Eigen::MatrixXd follower;  ///< the unsymmetric rest
   Eigen::VectorXd gradient;
-  Eigen::MatrixXd jacobian;  ///< of the rows
+  Eigen::MatrixXd jacobian;  ///< of the constraint rows
   Eigen::VectorXd residual;
   std::vector<Eigen::Index> free;  ///< unknowns that may move
 };
@@ -20,9 +21,9 @@ struct DenseChain {
 DenseChain dense_chain(const math::ChainSystem& system);
 
 struct DenseStep {
-  Eigen::VectorXd x;  ///< 0 where fixed
-  Eigen::VectorXd multiplier;
-  int negative = 0;  ///< eigenvalues of the Hessian on the null space of the rows
+  Eigen::VectorXd x;           ///< 0 where fixed
+  Eigen::VectorXd multiplier;  ///< of the constraint rows
+  int negative = 0;            ///< eigenvalues of the Hessian on the null space of the rows
 };
 
 DenseStep solve(const DenseChain& chain);
