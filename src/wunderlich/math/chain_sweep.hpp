@@ -55,14 +55,14 @@ struct PoseTerm {
 
 /// One linearised problem.
 struct ChainSystem {
-  std::vector<ChainLink> links;      ///< N + 1 entries; the last has no link, only joint and node
-  std::vector<ChainRow> rows;        ///< probes, then constraints; each sorted by decreasing node
-  std::vector<PoseTerm> pose_terms;  ///< sorted by decreasing node
-  Eigen::MatrixXd follower;          ///< (probes x probes) unsymmetric part of the Hessian, in the
-                                     ///< coordinates of as many probe rows: loads without a potential
-  std::array<bool, 6> base_fixed{};  ///< v (3), theta (3) of the base
-  std::array<double, 2> base_shift{};             ///< added to the diagonal of the base: position, rotation
-  std::array<double, 2> shift{};     ///< added to the diagonal of every 2 x 2 pivot
+  std::vector<ChainLink> links;        ///< N + 1 entries; the last has no link, only joint and node
+  std::vector<ChainRow> rows;          ///< probes, then constraints; each sorted by decreasing node
+  std::vector<PoseTerm> pose_terms;    ///< sorted by decreasing node
+  Eigen::MatrixXd follower;            ///< (probes x probes) unsymmetric part of the Hessian, in the
+                                       ///< coordinates of as many probe rows: loads without a potential
+  std::array<bool, 6> base_fixed{};    ///< v (3), theta (3) of the base
+  std::array<double, 2> base_shift{};  ///< added to the diagonal of the base: position, rotation
+  std::array<double, 2> shift{};       ///< added to the diagonal of every 2 x 2 pivot
   std::size_t probe_count() const { return static_cast<std::size_t>(follower.rows()); }
   bool geometric = true;  ///< false: leave out the terms that carry forces
 };

@@ -216,7 +216,11 @@ Stationary classify(const Ribbon& ribbon, const NewtonOptions& options, double s
     return Stationary::minimum;
   }
   if (eigenvalue < 0) return Stationary::saddle;
-  return shift > 0 && report.unshifted++ < kMaxUnshifted ? Stationary::unshift : Stationary::minimum;
+  if (shift > 0 && report.unshifted++ < kMaxUnshifted) return Stationary::unshift;
+  // Only a rigid motion of the whole strip is left that needs a shift.
+  report.negative_modes = 0;
+  report.neutral = shift > 0;
+  return Stationary::minimum;
 }
 
 }  // namespace
