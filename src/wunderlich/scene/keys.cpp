@@ -256,7 +256,7 @@ const std::vector<Key> table = {
      "1e-10",
      {},
      "Converged when Newton's step is below it: rotations in rad, displacements over the length."},
-    {"solver.max_iterations", Type::integer, "", 1, 1e7, "2000", {}, "Newton iterations for the whole path."},
+    {"solver.max_iterations", Type::integer, "", 1, 1e7, "2000", {}, "Newton iterations of one minimisation."},
     {"solver.barrier",
      Type::number,
      "",
