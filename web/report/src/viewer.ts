@@ -22,15 +22,18 @@ export interface Viewer {
 }
 
 const paint = { front: 0xc65a34, back: 0xe9c9a1 };
+const lightFrom = new THREE.Vector3(1.6, -1.2, 3.4);
 
-/** Edges that belong to one triangle only, as pairs of points: the rims and the ends. */
-function boundary(triangles: Uint32Array): Uint32Array {
+/** Edges that belong to one triangle only, as pairs of points: the rims, and the ends unless they are joined. */
+function boundary({ triangles, pointU, summary }: Run): Uint32Array {
+  const joined = summary.closure_error !== undefined;
   const seen = new Map<number, [number, number] | null>();
   for (let t = 0; t < triangles.length; t += 3) {
     for (let k = 0; k < 3; ++k) {
       const a = triangles[t + k], b = triangles[t + ((k + 1) % 3)];
       const key = Math.min(a, b) * 67108864 + Math.max(a, b);
-      seen.set(key, seen.has(key) ? null : [a, b]);
+      const across = joined && pointU !== null && pointU[a] === pointU[b];
+      seen.set(key, across || seen.has(key) ? null : [a, b]);
     }
   }
   return Uint32Array.from([...seen.values()].filter((edge) => edge !== null).flat());
@@ -62,7 +65,14 @@ function ribbonMaterial(): { material: THREE.MeshPhysicalMaterial; back: { value
     clearcoat: 0.08, clearcoatRoughness: 0.6, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 2,
   });
   const back = { value: new THREE.Color(paint.back) };
+  // Where a strip shadows itself is looked up a little off its surface: on the side of the light, whichever side of the
+  // strip that is. Else every second side lies in its own shadow, and a one-sided band changes its shade at the seam.
+  const { x, y, z } = lightFrom;
+  const offset = THREE.ShaderChunk.shadowmap_vertex.replace(
+    'transformNormalByInverseViewMatrix( transformedNormal, viewMatrix );',
+    `$& shadowWorldNormal *= sign(dot(shadowWorldNormal, vec3(${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)})));`);
   material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader.replace('#include <shadowmap_vertex>', offset);
     shader.uniforms.backColour = back;
     shader.fragmentShader = 'uniform vec3 backColour;\n' + shader.fragmentShader.replace(
       '#include <color_fragment>',
@@ -82,7 +92,7 @@ function lines(count: number, colour: number, opacity: number): THREE.LineSegmen
 
 function keyLight(): THREE.DirectionalLight {
   const light = new THREE.DirectionalLight(0xfff4e6, 2.2);
-  light.position.set(1.6, -1.2, 3.4);
+  light.position.copy(lightFrom);
   light.castShadow = true;
   light.shadow.mapSize.set(2048, 2048);
   light.shadow.normalBias = 0.015;
@@ -130,7 +140,7 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
   const mesh = new THREE.Mesh(geometry, material);
   mesh.castShadow = mesh.receiveShadow = true;
   mesh.frustumCulled = false;
-  const rims = boundary(run.triangles);
+  const rims = boundary(run);
   const rimLines = lines(rims.length, 0x2a1a12, 0.55);
   const rulingLines = lines(run.frames[0].rulings.length / 3, 0x2a1a12, 0.5);
   rulingLines.visible = false;
