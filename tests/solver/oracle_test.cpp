@@ -23,8 +23,7 @@ kkt::Problem oracle_of(const PathEnd& end) {
   kkt::Problem problem;
   problem.ribbon = end.ribbon();
   problem.model = end.path.options.model;
-  // The solver's barrier stands on every segment with the length of the whole strip, the oracle's with the segment's.
-  problem.barrier = end.path.options.barrier * end.ribbon().segments;
+  problem.barrier = end.path.options.barrier;
   problem.surroundings = end.path.surroundings;
   problem.time = end.path.options.duration;
   if (end.ribbon().is_loop()) {

@@ -109,7 +109,7 @@ class Sweep {
       const auto k = static_cast<std::size_t>(i);
       const ChainLink& link = system_.links[k];
       add_pose_parts(system_, i, next, value_, columns_);
-      add_node(link, value_, columns_.row(0), columns_.row(1), columns_.row(2));
+      add_node(link, gradient_share(system_), value_, columns_.row(0), columns_.row(1), columns_.row(2));
       work_.force[k] = value_.force;
       work_.torque[k] = value_.torque;
       pass_joint(link, system_.geometric, value_, columns_);
@@ -170,10 +170,15 @@ class Sweep {
     const auto index = static_cast<std::size_t>(i);
     const ChainLink* before = i > 0 ? &system_.links[index - 1] : nullptr;
     double *z0 = columns_.row(6), *z1 = columns_.row(7);
+    const double share = gradient_share(system_);
+    if (system_.only_load) {
+      z0[0] += (*system_.only_load)[index][0];
+      z1[0] += (*system_.only_load)[index][1];
+    }
     if (before) {
       value_.z += before->hess_bb;
-      z0[0] += before->grad_b[0];
-      z1[0] += before->grad_b[1];
+      z0[0] += share * before->grad_b[0];
+      z1[0] += share * before->grad_b[1];
       value_.gradient += before->grad_b;
     }
     value_.z(0, 0) += system_.shift[0];
@@ -205,8 +210,8 @@ class Sweep {
       z0[k] = -(c(0, 0) * s0 + c(0, 1) * s1);
       z1[k] = -(c(1, 0) * s0 + c(1, 1) * s1);
     }
-    z0[0] += before->grad_a[0];
-    z1[0] += before->grad_a[1];
+    z0[0] += share * before->grad_a[0];
+    z1[0] += share * before->grad_a[1];
     value_.gradient = before->grad_a;
     return true;
   }

@@ -42,7 +42,7 @@ struct ChainRow {
   Vec3 base_v = Vec3::Zero(), base_theta = Vec3::Zero();
   Vec2 first_u = Vec2::Zero();
   double residual = 0;    ///< value at the current iterate; the step makes it 0
-  double penalty = 0;     ///< adds penalty/2 * (row)^2 to the objective's Hessian
+  double penalty = 0;     ///< adds penalty/2 (pose part of the row)^2 to the objective
   double multiplier = 0;  ///< current value, for the geometric terms
 };
 
@@ -64,7 +64,9 @@ struct ChainSystem {
   std::array<double, 2> base_shift{};  ///< added to the diagonal of the base: position, rotation
   std::array<double, 2> shift{};       ///< added to the diagonal of every 2 x 2 pivot
   std::size_t probe_count() const { return static_cast<std::size_t>(follower.rows()); }
-  bool geometric = true;  ///< false: leave out the terms that carry forces
+  const std::vector<Vec2>* only_load = nullptr;  ///< (N + 1) if set, the gradient in u for which to solve instead of
+                                                 ///< the objective's own: the response to a load
+  bool geometric = true;                         ///< false: leave out the terms that carry forces
 };
 
 /// What a joint keeps from the backward sweep.

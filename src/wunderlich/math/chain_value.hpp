@@ -67,12 +67,15 @@ struct Cursor {
   std::size_t term, probe, row;
 };
 
+/// 1, or 0 where the right-hand side is a load of its own.
+inline double gradient_share(const ChainSystem& system) { return system.only_load ? 0.0 : 1.0; }
+
 template <int M>
-void add_row(const ChainRow& row, int k, Value& value, Columns<M>& columns) {
+void add_row(const ChainRow& row, int k, double share, Value& value, Columns<M>& columns) {
   const double pose[6] = {row.v[0], row.v[1], row.v[2], row.theta[0], row.theta[1], row.theta[2]};
   for (int i = 0; i < 6; ++i) {
     columns.row(i)[k] = pose[i];
-    columns.row(i)[0] += row.penalty * row.residual * pose[i];
+    columns.row(i)[0] += share * row.penalty * row.residual * pose[i];
     for (int j = 0; j < 6; ++j) value.p[i][j] += row.penalty * pose[i] * pose[j];
   }
   columns.row(6)[k] = row.u[0];
@@ -88,25 +91,25 @@ void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& va
   for (; next.term < system.pose_terms.size() && system.pose_terms[next.term].node == node; ++next.term) {
     const PoseTerm& term = system.pose_terms[next.term];
     for (int i = 0; i < 6; ++i) {
-      columns.row(i)[0] += term.gradient[i];
+      columns.row(i)[0] += gradient_share(system) * term.gradient[i];
       for (int j = 0; j < 6; ++j) value.p[i][j] += term.hessian(i, j);
     }
     value.force += term.gradient.head<3>();
     value.torque += term.gradient.tail<3>();
   }
   const auto take = [&](std::size_t index) {
-    add_row(system.rows[index], static_cast<int>(index) + 1, value, columns);
+    add_row(system.rows[index], static_cast<int>(index) + 1, gradient_share(system), value, columns);
   };
   const std::size_t probes = system.probe_count();
   while (next.probe < probes && system.rows[next.probe].node == node) take(next.probe++);
   while (next.row < system.rows.size() && system.rows[next.row].node == node) take(next.row++);
 }
 
-inline void add_node(const ChainLink& link, Value& value, double* v0, double* v1, double* v2) {
+inline void add_node(const ChainLink& link, double share, Value& value, double* v0, double* v1, double* v2) {
   for (int i = 0; i < 3; ++i) value.p[i][i] += link.stiffness;
-  v0[0] += link.force[0];
-  v1[0] += link.force[1];
-  v2[0] += link.force[2];
+  v0[0] += share * link.force[0];
+  v1[0] += share * link.force[1];
+  v2[0] += share * link.force[2];
   value.force += link.force;
 }
 

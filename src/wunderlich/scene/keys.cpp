@@ -264,7 +264,8 @@ const std::vector<Key> table = {
      1,
      "1e-9",
      {},
-     "Weight e1 of the final barrier e1 D (l/w) sum -ln(1 - x^2) that keeps rulings from meeting."},
+     "Weight e1 of the final barrier e1 D sum (l/w) (-ln(1 - x^2)), l a segment's length, that keeps rulings from "
+     "meeting."},
 
     {"output", Type::map, "", 0, 0, "", {}, "What the run folder holds."},
     {"output.frames", Type::integer, "", 1, 100000, "60", {}, "At most so many recorded frames."},

@@ -24,7 +24,7 @@ struct SolverOptions {
   int steps = 0;              ///< load steps of the path; 0: as few as it takes
   double tolerance = 1e-10;   ///< on the Newton step: rotation [rad] and displacement / length
   int max_iterations = 2000;  ///< Newton iterations of one minimisation
-  double barrier = 1e-9;      ///< e1 of the final ruling barrier e1 D (l/w) sum -ln(1 - x^2)
+  double barrier = 1e-9;      ///< e1 of the final ruling barrier, see solver::ChainProblem
 };
 
 struct OutputOptions {

@@ -21,8 +21,9 @@ namespace {
 
 double rigidity(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width; }
 
-double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem) {
-  return problem.barrier * ribbon.bending_stiffness * ribbon.length / ribbon.width;
+/// e1 D l_s/w of one segment.
+double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem, std::size_t segment) {
+  return problem.barrier * ribbon.bending_stiffness * ribbon.rest_length[segment] / ribbon.width;
 }
 
 energy::LinkEnd link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
@@ -237,7 +238,6 @@ std::size_t row_count(const ChainProblem& problem) {
 ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                          const Kinematics& reference) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
-  const double e1 = barrier_weight(ribbon, problem);
   ObjectiveValue value;
   for (std::size_t s = 0; s < n; ++s) {
     const double x = 0.5 * ribbon.width * (chain.eta[s + 1] - chain.eta[s]) / ribbon.rest_length[s];
@@ -245,7 +245,7 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
         energy::link_bending(energy::quadrature(ribbon, problem.model, s), link_end(ribbon, problem, chain, k, s, s),
                              link_end(ribbon, problem, chain, k, s, s + 1));
     value.elastic += bent * energy::width_factor(problem.model, x).value;
-    value.barrier += e1 * energy::ruling_barrier(x).value;
+    value.barrier += barrier_weight(ribbon, problem, s) * energy::ruling_barrier(x).value;
   }
   for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i]);
   if (problem.proximity > 0) {
@@ -279,7 +279,6 @@ void constraint_residuals(const Ribbon& ribbon, const ChainProblem& problem, con
 void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                const std::vector<double>& multipliers, ChainSystem& system) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
-  const double e1 = barrier_weight(ribbon, problem);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
   for (std::size_t i = 0; i <= n; ++i) {
@@ -292,6 +291,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
     link.span = ribbon.rest_length[i] * k.frame[i].col(2);
     const double slope = 0.5 * ribbon.width / ribbon.rest_length[i];
     const double x = slope * (chain.eta[i + 1] - chain.eta[i]);
+    const double e1 = barrier_weight(ribbon, problem, i);
     energy::WidthFactor barrier = energy::ruling_barrier(x);
     barrier.value *= e1;
     barrier.first *= e1;

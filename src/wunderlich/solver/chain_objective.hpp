@@ -32,7 +32,7 @@ struct PointLoad {
 /// holds and, for loops, the closure.
 struct ChainProblem {
   energy::Model model;
-  double barrier = 1e-6;             ///< e1: e1 D (l/w) sum over segments of -ln(1 - x^2)
+  double barrier = 1e-6;             ///< e1: e1 D sum over segments of (l_s/w) (-ln(1 - x^2))
   std::vector<Vec3> force;           ///< (segments + 1) dead force on each node [N]
   std::vector<PointLoad> loads;      ///< sorted by decreasing node
   double proximity = 0;              ///< (proximity/2) sum of hinge weight |r - anchor|^2 [N/m^2]

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "wunderlich/math/rotation.hpp"
 
@@ -150,35 +149,32 @@ bool line_search(const Iterate& at, const Chain& chain, double start, double slo
 }
 
 /// The softest direction of the reduced Hessian, left in work.step with largest entry 1, and its eigenvalue in the
-/// units of the shift: inverse iteration on the shifted system from a fixed seed. NaN if the system is singular.
+/// units of the shift: inverse iteration on the shifted system from a fixed seed. Not finite if the system is singular.
 double softest_mode(const Ribbon& ribbon, double shift, NewtonWorkspace& work) {
   const auto unit = shift_units(ribbon);
   const std::size_t count = work.system.links.size();
   unsigned seed = 1;
   const auto noise = [&] { return static_cast<double>(seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };
   for (auto& row : work.system.rows) row.residual = 0;
-  work.system.pose_terms.clear();
+  work.load.resize(count);
+  work.system.only_load = &work.load;
   double growth = 0;
   for (int pass = 0; pass < 6; ++pass) {
     for (std::size_t i = 0; i < count; ++i) {
-      auto& link = work.system.links[i];
       const Vec2 u = pass == 0 ? Vec2(noise(), noise()) : work.step.u[i];
-      link.force.setZero();
-      link.grad_b.setZero();
-      link.grad_a = -u.cwiseProduct(unit);
-      if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) link.grad_a[0] = 0;
-      if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) link.grad_a[1] = 0;
+      work.load[i] = -u.cwiseProduct(unit);
+      if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) work.load[i][0] = 0;
+      if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) work.load[i][1] = 0;
     }
-    // The last node has no link of its own; its share enters through the link before it.
-    work.system.links[count - 2].grad_b = work.system.links[count - 1].grad_a;
-    if (!math::chain_step(work.system, work.sweep, work.step)) return std::numeric_limits<double>::quiet_NaN();
+    if (!math::chain_step(work.system, work.sweep, work.step)) break;
     growth = 0;
     for (const Vec2& u : work.step.u) growth = std::max(growth, u.lpNorm<Eigen::Infinity>());
-    if (!(growth > 0)) return std::numeric_limits<double>::quiet_NaN();
+    if (!(growth > 0)) break;
     for (Vec2& u : work.step.u) u /= growth;
     for (Vec3& v : work.step.v) v /= growth;
     work.step.base /= growth;
   }
+  work.system.only_load = nullptr;
   return 1 / growth - shift;
 }
 
@@ -207,14 +203,16 @@ Stationary classify(const Ribbon& ribbon, const NewtonOptions& options, double s
                     NewtonWorkspace& work, NewtonReport& report) {
   if (max_abs(work.residuals) > options.tolerance || shift > kStationaryShift) return Stationary::no;
   if (shift == 0 && report.last_step < options.tolerance) return Stationary::minimum;
-  const bool flat = -slope < kRounding * std::abs(merit);
-  if (!(shift > 0 && report.last_step < kSaddleStep) && !(shift == 0 && flat)) return Stationary::no;
+  // At rounding level a few more full steps reach the tolerance, unless a neutral mode keeps them long.
+  const bool flat = shift == 0 && -slope < kRounding * std::abs(merit) && ++report.flat > kMaxUnshifted;
+  if (!(shift > 0 && report.last_step < kSaddleStep) && !flat) return Stationary::no;
   const double eigenvalue = softest_mode(ribbon, shift, work);
   if (std::abs(eigenvalue) < kNeutral) {
     report.negative_modes = 0;
     report.neutral = true;
     return Stationary::minimum;
   }
+  if (!std::isfinite(eigenvalue)) return Stationary::no;
   if (eigenvalue < 0) return Stationary::saddle;
   if (shift > 0 && report.unshifted++ < kMaxUnshifted) return Stationary::unshift;
   // Only a rigid motion of the whole strip is left that needs a shift.

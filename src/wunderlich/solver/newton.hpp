@@ -26,6 +26,7 @@ struct NewtonReport {
   int sweeps = 0;           ///< linear solves; more than iterations where shifts were needed
   int evaluations = 0;      ///< objective evaluations in the line search
   int kicks = 0;            ///< times it left a stationary point that was no minimum
+  int flat = 0;             ///< iterations whose decrease was below rounding
   int unshifted = 0;        ///< times a shift was dropped for the last steps
   bool neutral = false;     ///< the softest mode has no stiffness to rounding: one of a family of minima
   int negative_modes = 0;   ///< of the unshifted reduced Hessian where it stopped
@@ -42,10 +43,11 @@ struct NewtonWorkspace {
   geometry::Kinematics kinematics, trial_kinematics;
   geometry::Chain trial;
   std::vector<double> residuals, trial_residuals;
+  std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };
 
 /// Finds a local minimum of the problem near `chain`, which it updates only if it converges. `multipliers` (one
-/// a row, any start) are updated with it.
+/// a row; 0 will do to start) are updated with it.
 NewtonReport minimise(const geometry::Ribbon& ribbon, const ChainProblem& problem, const NewtonOptions& options,
                       geometry::Chain& chain, std::vector<double>& multipliers, NewtonWorkspace& work);
 

@@ -14,7 +14,8 @@ using geometry::Ribbon;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kPathBarrier = 1e-3;  // e1 on the way; the final state has the path's own
+constexpr double kPathBarrier =
+    3e-2;  // e1 on the way (with less, twist-pi ends in a higher minimum); then the path's own
 constexpr double kSmallestStep = 1.0 / 1024;
 
 /// A flat strip between two held places can leave the plane either way, and its rulings are undetermined: a small
