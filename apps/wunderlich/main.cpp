@@ -1,5 +1,6 @@
 /// The program `wunderlich`: what the user says, sorted into commands, and what goes wrong, sorted into exit codes.
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
@@ -88,6 +89,8 @@ int main(int argc, char** argv) {
   try {
     return app::run_program(argc, argv);
   } catch (const InputError& error) {
+    return app::report(app::bad_input, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
     return app::report(app::bad_input, error.what());
   } catch (const std::domain_error& error) {
     return app::report(app::not_converged, std::string("nothing was written: ") + error.what());

@@ -117,6 +117,7 @@ class Sweep {
       if (!eliminate(i, step)) return false;
       if (i > 0) pass_span(system_.links[k - 1].span, system_.geometric, value_, columns_);
     }
+    add_pose_parts(system_, -1, next, value_, columns_);
     return finish_base(step);
   }
 

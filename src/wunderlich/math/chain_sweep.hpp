@@ -46,7 +46,8 @@ struct ChainRow {
   double multiplier = 0;  ///< current value, for the geometric terms
 };
 
-/// A term in the pose of link `node` (or the end frame): torque-like gradients with their exact Hessian.
+/// A term in the pose of link `node` (N: the end frame, -1: the base, before the first joint): torque-like gradients
+/// with their exact Hessian.
 struct PoseTerm {
   int node;
   Vec6 gradient = Vec6::Zero();  ///< in (v, theta)

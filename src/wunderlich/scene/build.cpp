@@ -110,7 +110,7 @@ geometry::RibbonSpec build_ribbon(const Cell& root) {
   return ribbon;
 }
 
-SolverOptions build_solver(const Cell& root, double last_key) {
+SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key) {
   const Cell cell = child(root, "solver");
   SolverOptions options;
   options.method = chosen<Method>(child(cell, "method"), {{"equilibrium", Method::equilibrium}});
@@ -128,6 +128,9 @@ SolverOptions build_solver(const Cell& root, double last_key) {
   options.loop_path =
       chosen<LoopPath>(child(cell, "path"),
                        {{"automatic", LoopPath::automatic}, {"twist", LoopPath::twist}, {"planar", LoopPath::planar}});
+  if (options.loop_path == LoopPath::planar && std::abs(ribbon.half_twists) != 2) {
+    fail(child(cell, "path"), "leads to a loop with two half twists only; set `ribbon.half_twists: 2`");
+  }
   const Cell duration = child(cell, "duration");
   options.duration = duration.value != nullptr ? number(duration) : last_key > 0 ? last_key : 1;
   options.steps = static_cast<int>(integer(child(cell, "steps")));

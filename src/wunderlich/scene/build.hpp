@@ -14,7 +14,7 @@ geometry::RibbonSpec build_ribbon(const Cell& root);
 constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSpec& ribbon);
 
 /// Solver options; `last_key` is the time of the last keyframe, 0 without any.
-SolverOptions build_solver(const Cell& root, double last_key);
+SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key);
 
 /// Output options; throws InputError when they ask for more data than is sensible for this strip.
 OutputOptions build_output(const Cell& root, const geometry::RibbonSpec& ribbon);

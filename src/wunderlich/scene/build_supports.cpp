@@ -255,6 +255,9 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
     if (turns && at_end && ribbon.closure == geometry::Closure::open) ribbon.clamped[load.node == 0 ? 0 : 1] = true;
   }
   const bool floating = surroundings.supports.empty() && !surroundings.gravity.isZero(0);
+  if (surroundings.supports.empty() && !surroundings.loads.empty()) {
+    fail(child(root, "forces"), "nothing holds the strip against them; add a clamp or a pin");
+  }
   if (floating) fail(child(root, "gravity"), "nothing holds the strip against it; add a clamp or a pin");
   return surroundings;
 }

@@ -80,7 +80,7 @@ Scene read_scene_text(const std::string& text, const std::string& source, const 
   scene.title = title.value == nullptr ? scene.name : title.value->text;
   scene.ribbon = build_ribbon(root);
   scene.surroundings = build_surroundings(root, scene.ribbon);
-  scene.solver = build_solver(root, last_key_time(scene.surroundings));
+  scene.solver = build_solver(root, scene.ribbon, last_key_time(scene.surroundings));
   scene.output = build_output(root, scene.ribbon);
   scene.resolved = to_yaml(document);
   return scene;

@@ -69,7 +69,7 @@ HistoryRow history_of(const PathProblem& path, const PathState& state, const Sta
 /// Keeps about `limit` records: when there are too many, every second one goes, but never the first or last.
 void thin(std::vector<Record>& records, int limit) {
   const auto most = static_cast<std::size_t>(std::max(2, limit));
-  if (records.size() <= 2 * most) return;
+  if (records.size() <= most) return;
   std::vector<Record> kept;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (i % 2 == 0 || i + 1 == records.size()) kept.push_back(std::move(records[i]));

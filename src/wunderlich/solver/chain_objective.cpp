@@ -1,5 +1,6 @@
 #include "wunderlich/solver/chain_objective.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -206,13 +207,13 @@ math::Mat6 follower_stiffness(const PointLoad& load, const Quat& frame) {
 }
 
 /// Point loads as gradients, with probe rows for the part of their derivative that no potential has.
-void add_loads(const ChainProblem& problem, const Kinematics& k, ChainSystem& system) {
+void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics& k, ChainSystem& system) {
   system.pose_terms.clear();
   const auto count = static_cast<Eigen::Index>(problem.loads.size());
   system.follower.setZero(6 * count, 6 * count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const PointLoad& load = problem.loads[static_cast<std::size_t>(i)];
-    const Quat& frame = k.q[static_cast<std::size_t>(load.node)];
+    const Quat& frame = load.node < 0 ? chain.base.frame : k.q[static_cast<std::size_t>(load.node)];
     math::PoseTerm term;
     term.node = load.node;
     term.gradient << -in_space(load, load.force, frame), -in_space(load, load.torque, frame);
@@ -247,17 +248,18 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
     value.elastic += bent * energy::width_factor(problem.model, x).value;
     value.barrier += barrier_weight(ribbon, problem, s) * energy::ruling_barrier(x).value;
   }
-  for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i]);
+  for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i] - reference.r[i]);
   if (problem.proximity > 0) {
     for (std::size_t i = 0; i <= n; ++i) {
       value.rest += 0.5 * problem.proximity * ribbon.hinge_length[i] * (k.r[i] - problem.anchor[i]).squaredNorm();
     }
   }
   for (const PointLoad& load : problem.loads) {
-    const auto i = static_cast<std::size_t>(load.node);
-    const Vec3 turn = math::log_map(k.q[i] * reference.q[i].conjugate());
-    value.rest -= in_space(load, load.force, reference.q[i]).dot(k.r[i]);
-    value.rest -= in_space(load, load.torque, reference.q[i]).dot(turn);
+    const auto i = static_cast<std::size_t>(std::max(load.node, 0));
+    const Quat& frame = reference.q[i];
+    const Vec3 turn = math::log_map(k.q[i] * frame.conjugate());
+    value.rest -= in_space(load, load.force, frame).dot(k.r[i] - reference.r[i]);
+    value.rest -= in_space(load, load.torque, frame).dot(turn);
   }
   return value;
 }
@@ -310,7 +312,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
     if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 1);
   }
   system.rows.clear();
-  add_loads(problem, k, system);
+  add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);
 }
 

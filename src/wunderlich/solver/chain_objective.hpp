@@ -20,7 +20,7 @@ struct Hold {
   Pose target;  ///< about_tangent: the frame to be transported and turned
 };
 
-/// A force and torque on the pose of one link (N: the end frame).
+/// A force and torque on the pose of one link (N: the end frame, -1: the base, the start node's own frame).
 struct PointLoad {
   int node = 0;
   constraint::LoadFrame frame = constraint::LoadFrame::space;

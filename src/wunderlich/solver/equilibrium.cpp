@@ -16,6 +16,7 @@ using geometry::Ribbon;
 namespace {
 
 constexpr double kMotionStep = 0.08;  // of a support between two places that are held [rad, lengths]
+constexpr double kLargestTurn = 1;    // of a support in one load step [rad]
 constexpr int kProximalPasses = 3;    // minimisations with a fictitious mass a load step
 constexpr double kProximity = 1e4;    // that mass, in units of D w / l^4 per length
 constexpr int kSettleRounds = 30;
@@ -28,8 +29,9 @@ bool is_proximal(const PathProblem& path) { return path.surroundings.supports.si
 double planned_step(const PathProblem& path, const PathState& state) {
   const double duration = path.options.duration;
   if (state.phase == Phase::approach) return is_proximal(path) ? 0.05 : 1;
-  if (path.options.steps > 0) return duration / path.options.steps;
   const double way = motion_between(path, 0, duration);
+  // A frame cannot tell a whole turn from none: no step, also of the user's choice, may turn a support that far.
+  if (path.options.steps > 0) return duration / std::max<double>(path.options.steps, std::ceil(way / kLargestTurn));
   const int count = is_proximal(path) ? static_cast<int>(std::ceil(way / kMotionStep)) : 1;
   return duration / std::clamp(count, path.surroundings.loads.empty() ? 1 : 4, 4000);
 }
@@ -225,8 +227,9 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
   const Ribbon& ribbon = ribbon_of(path, state);
   Chain chain = state.chain;
   PathState settled = state;
-  settled.phase = Phase::settle;
-  const ChainProblem problem = problem_at(path, settled, path.options.duration, chain);
+  const bool over = state.phase == Phase::settle || state.phase == Phase::done;
+  settled.phase = over ? Phase::settle : state.phase;
+  const ChainProblem problem = problem_at(path, settled, over ? path.options.duration : state.t, chain);
   EndReactions reactions;
   if (state.multipliers.size() != row_count(problem)) return reactions;
   geometry::forward_kinematics(ribbon, chain, work.kinematics);

@@ -81,7 +81,8 @@ void add_loads(const PathProblem& path, const PathState& state, double t, ChainP
     if (load.frame == constraint::LoadFrame::space && key.torque.isZero()) {
       problem.force[static_cast<std::size_t>(load.node)] += key.force;
     } else {
-      problem.loads.push_back({load.node, load.frame, key.force, key.torque});
+      const bool on_base = load.node == 0 && path.ribbon.clamped[0];
+      problem.loads.push_back({on_base ? -1 : load.node, load.frame, key.force, key.torque});
     }
   }
   std::stable_sort(problem.loads.begin(), problem.loads.end(), [](auto& a, auto& b) { return a.node > b.node; });
@@ -97,17 +98,20 @@ bool base_is_held(const PathProblem& path) {
 }
 
 double motion_between(const PathProblem& path, double t0, double t1) {
-  constexpr int kParts = 256;  // finer than half a turn each, so that the shorter rotation is the right one
   double most = 0;
   for (const Support& support : path.surroundings.supports) {
-    double sum = 0;
-    for (int k = 0; k < kParts; ++k) {
-      const Pose a = constraint::pose_at(support.motion, t0 + (t1 - t0) * k / kParts);
-      const Pose b = constraint::pose_at(support.motion, t0 + (t1 - t0) * (k + 1) / kParts);
-      sum += std::max((a.position - b.position).norm() / path.ribbon.length,
-                      math::log_map(a.frame.conjugate() * b.frame).norm());
+    double way = 0;
+    const auto& keys = support.motion.keys;
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+      const double span = keys[i + 1].time - keys[i].time;
+      const double inside = std::min(t1, keys[i + 1].time) - std::max(t0, keys[i].time);
+      if (inside <= 0) continue;
+      const double turned =
+          std::abs(keys[i + 1].turn - keys[i].turn) + keys[i].pose.frame.angularDistance(keys[i + 1].pose.frame);
+      const double moved = (keys[i + 1].pose.position - keys[i].pose.position).norm() / path.ribbon.length;
+      way += inside / span * std::max(turned, moved);
     }
-    most = std::max(most, sum);
+    most = std::max(most, way);
   }
   return most;
 }

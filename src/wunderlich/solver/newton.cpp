@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "wunderlich/math/rotation.hpp"
 
@@ -18,7 +19,7 @@ constexpr double kBoundaryFraction = 0.9;
 constexpr double kKick = 0.05;  // largest fold-angle change that leaves a saddle [rad]
 constexpr int kMaxKicks = 20, kMaxUnshifted = 3;
 constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: stationary, but is it a minimum?
-constexpr double kStationaryShift = 1e-2;
+constexpr int kInversePasses = 12;
 constexpr double kNeutral = 1e-7;  // eigenvalues below this (units of the shift) count as zero
 constexpr double kRounding = 1e-15;
 constexpr double kSmallestShift = 1e-9, kLargestShift = 1e6, kShiftFactor = 5;
@@ -82,15 +83,20 @@ void apply_step(const Chain& chain, const math::ChainStep& step, double scale, C
 double step_size(const Ribbon& ribbon, const NewtonWorkspace& work) {
   double size = 0;
   for (std::size_t i = 0; i < work.step.u.size(); ++i) {
+    if (!work.step.u[i].allFinite()) return std::numeric_limits<double>::infinity();
     size = std::max({size, (work.system.links[i].axes * work.step.u[i]).norm(), work.step.v[i].norm() / ribbon.length,
                      1e-3 * std::abs(work.step.u[i][1])});
   }
   return size;
 }
 
+/// NaN if any value is: it must not pass for small.
 double max_abs(const std::vector<double>& values) {
   double most = 0;
-  for (const double v : values) most = std::max(most, std::abs(v));
+  for (const double v : values) {
+    if (std::isnan(v)) return v;
+    most = std::max(most, std::abs(v));
+  }
   return most;
 }
 
@@ -100,16 +106,20 @@ Vec2 shift_units(const Ribbon& ribbon) {
   return ribbon.bending_stiffness * l * Vec2(ribbon.width, 1 / ribbon.width);
 }
 
+/// The base too: a strip that hangs on one pin may turn about the vertical freely.
+void set_shift(const Ribbon& ribbon, double shift, math::ChainSystem& system) {
+  const Vec2 unit = shift * shift_units(ribbon);
+  const double base = shift * ribbon.bending_stiffness * ribbon.width / ribbon.length;
+  system.shift = {unit[0], unit[1]};
+  system.base_shift = {base / (ribbon.length * ribbon.length), base};
+}
+
 /// Solves with the smallest shift of the series that leaves no negative mode; false if none does.
 bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& work, NewtonReport& report,
                     double& shift) {
-  const Vec2 unit = shift_units(ribbon);
   shift = shift <= kSmallestShift ? 0 : shift / kShiftFactor;
   while (shift < kLargestShift) {
-    // The base too: a strip that hangs on one pin may turn about the vertical freely.
-    const double base = shift * ribbon.bending_stiffness * ribbon.width / ribbon.length;
-    work.system.base_shift = {base / (ribbon.length * ribbon.length), base};
-    work.system.shift = {shift * unit[0], shift * unit[1]};
+    set_shift(ribbon, shift, work.system);
     ++report.sweeps;
     const bool solved = math::chain_step(work.system, work.sweep, work.step);
     if (shift == 0) report.negative_modes = work.step.negative_pivots;
@@ -148,9 +158,9 @@ bool line_search(const Iterate& at, const Chain& chain, double start, double slo
   return false;
 }
 
-/// The softest direction of the reduced Hessian, left in work.step with largest entry 1, and its eigenvalue in the
-/// units of the shift: inverse iteration on the shifted system from a fixed seed. Not finite if the system is singular.
-double softest_mode(const Ribbon& ribbon, double shift, NewtonWorkspace& work) {
+/// The softest direction of the reduced Hessian, left in work.step with largest entry 1: inverse iteration on the
+/// shifted system from a fixed seed. False if the system is singular.
+bool softest_mode(const Ribbon& ribbon, NewtonWorkspace& work) {
   const auto unit = shift_units(ribbon);
   const std::size_t count = work.system.links.size();
   unsigned seed = 1;
@@ -158,24 +168,25 @@ double softest_mode(const Ribbon& ribbon, double shift, NewtonWorkspace& work) {
   for (auto& row : work.system.rows) row.residual = 0;
   work.load.resize(count);
   work.system.only_load = &work.load;
-  double growth = 0;
-  for (int pass = 0; pass < 6; ++pass) {
+  bool found = false;
+  for (int pass = 0; pass < kInversePasses; ++pass) {
     for (std::size_t i = 0; i < count; ++i) {
       const Vec2 u = pass == 0 ? Vec2(noise(), noise()) : work.step.u[i];
       work.load[i] = -u.cwiseProduct(unit);
       if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) work.load[i][0] = 0;
       if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) work.load[i][1] = 0;
     }
-    if (!math::chain_step(work.system, work.sweep, work.step)) break;
-    growth = 0;
-    for (const Vec2& u : work.step.u) growth = std::max(growth, u.lpNorm<Eigen::Infinity>());
-    if (!(growth > 0)) break;
-    for (Vec2& u : work.step.u) u /= growth;
-    for (Vec3& v : work.step.v) v /= growth;
-    work.step.base /= growth;
+    found = math::chain_step(work.system, work.sweep, work.step);
+    double largest = 0;
+    for (const Vec2& u : work.step.u) largest = std::max(largest, u.lpNorm<Eigen::Infinity>());
+    found = found && largest > 0;
+    if (!found) break;
+    for (Vec2& u : work.step.u) u /= largest;
+    for (Vec3& v : work.step.v) v /= largest;
+    work.step.base /= largest;
   }
   work.system.only_load = nullptr;
-  return 1 / growth - shift;
+  return found;
 }
 
 /// Moves the iterate along the direction in work.step, far enough to leave a saddle, little enough that the
@@ -195,29 +206,26 @@ void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
 }
 
 /// What a stationary iterate is: a minimum (also where the softest mode is neutral, as in sliding along a closed
-/// band), a saddle, or a point that needs its last steps without a shift. Where it looks for the softest mode it
-/// overwrites work.step.
+/// band), a saddle, or a point that needs its last steps without a shift.
 enum class Stationary { no, minimum, saddle, unshift };
 
+/// Decided by the inertia under the smallest shift that counts as none. Overwrites work.step where it has to look.
 Stationary classify(const Ribbon& ribbon, const NewtonOptions& options, double shift, double slope, double merit,
                     NewtonWorkspace& work, NewtonReport& report) {
-  if (max_abs(work.residuals) > options.tolerance || shift > kStationaryShift) return Stationary::no;
+  if (!(max_abs(work.residuals) < options.tolerance)) return Stationary::no;
   if (shift == 0 && report.last_step < options.tolerance) return Stationary::minimum;
   // At rounding level a few more full steps reach the tolerance, unless a neutral mode keeps them long.
   const bool flat = shift == 0 && -slope < kRounding * std::abs(merit) && ++report.flat > kMaxUnshifted;
-  if (!(shift > 0 && report.last_step < kSaddleStep) && !flat) return Stationary::no;
-  const double eigenvalue = softest_mode(ribbon, shift, work);
-  if (std::abs(eigenvalue) < kNeutral) {
-    report.negative_modes = 0;
-    report.neutral = true;
-    return Stationary::minimum;
-  }
-  if (!std::isfinite(eigenvalue)) return Stationary::no;
-  if (eigenvalue < 0) return Stationary::saddle;
-  if (shift > 0 && report.unshifted++ < kMaxUnshifted) return Stationary::unshift;
-  // Only a rigid motion of the whole strip is left that needs a shift.
+  if (!(shift > 0 && report.last_step * (1 + shift) < kSaddleStep) && !flat) return Stationary::no;
+  set_shift(ribbon, kNeutral, work.system);
+  ++report.sweeps;
+  const bool solved = math::chain_step(work.system, work.sweep, work.step);
+  set_shift(ribbon, shift, work.system);
+  if (!solved) return Stationary::unshift;
+  if (work.step.negative_pivots > 0 && shift > 0) return Stationary::saddle;
+  report.neutral = report.negative_modes > 0;
+  if (!report.neutral && shift > 0 && report.unshifted++ < kMaxUnshifted) return Stationary::unshift;
   report.negative_modes = 0;
-  report.neutral = shift > 0;
   return Stationary::minimum;
 }
 
@@ -271,7 +279,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     }
     if (kind == Stationary::saddle && report.kicks < kMaxKicks) {
       ++report.kicks;
-      kick(ribbon, current, work);
+      if (softest_mode(ribbon, work)) kick(ribbon, current, work);
       continue;
     }
     if (kind == Stationary::saddle || !line_search(at, current, merit, slope, limit, report)) {
