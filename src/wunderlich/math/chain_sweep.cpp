@@ -197,7 +197,7 @@ class Sweep {
       work_.gains[index].previous.setZero();
       return true;
     }
-    const Mat2& c = before->hess_ab;
+    const Mat2 c = before->hess_ab;
     const Mat2 previous = inverse * c.transpose();
     work_.gains[index].previous = previous;
     value_.z = before->hess_aa - c * previous;
@@ -218,27 +218,31 @@ class Sweep {
   }
 
   /// Z^-1 times the columns, and their Gram matrix.
-  void reduce_columns(const Mat2& inverse, const double* z0, const double* z1, double* solved) {
+  void reduce_columns(Mat2 inverse, const double* __restrict z0, const double* __restrict z1,
+                      double* __restrict solved) {
     const int m = columns_.count();
     for (int k = 0; k < m; ++k) {
       solved[k] = inverse(0, 0) * z0[k] + inverse(0, 1) * z1[k];
       solved[m + k] = inverse(1, 0) * z0[k] + inverse(1, 1) * z1[k];
     }
+    double* __restrict gram = gram_.data();
     for (int a = 0; a < m; ++a) {
-      double* row = gram_.data() + a * m;
-      for (int b = 0; b < m; ++b) row[b] += z0[a] * solved[b] + z1[a] * solved[m + b];
+      for (int b = 0; b < m; ++b) gram[a * m + b] += z0[a] * solved[b] + z1[a] * solved[m + b];
     }
   }
 
   /// P -= Y Z^-1 Y^T and the pose rows of the columns -= Y Z^-1 z; leaves (Y Z^-1)^T in `gain`.
-  void reduce_pose(const Mat2& inverse, const double* z0, const double* z1, Eigen::Matrix<double, 2, 6>& gain) {
+  void reduce_pose(Mat2 inverse, const double* __restrict z0, const double* __restrict z1,
+                   Eigen::Matrix<double, 2, 6>& gain) {
+    double y0[6], y1[6];
+    for (int r = 0; r < 6; ++r) y0[r] = value_.y[r][0], y1[r] = value_.y[r][1];
     for (int r = 0; r < 6; ++r) {
-      const double y0 = value_.y[r][0], y1 = value_.y[r][1];
-      const double g0 = y0 * inverse(0, 0) + y1 * inverse(1, 0), g1 = y0 * inverse(0, 1) + y1 * inverse(1, 1);
+      const double g0 = y0[r] * inverse(0, 0) + y1[r] * inverse(1, 0);
+      const double g1 = y0[r] * inverse(0, 1) + y1[r] * inverse(1, 1);
       gain(0, r) = g0;
       gain(1, r) = g1;
-      for (int c = 0; c < 6; ++c) value_.p[r][c] -= g0 * value_.y[c][0] + g1 * value_.y[c][1];
-      double* row = columns_.row(r);
+      for (int c = 0; c < 6; ++c) value_.p[r][c] -= g0 * y0[c] + g1 * y1[c];
+      double* __restrict row = columns_.row(r);
       for (int k = 0; k < columns_.count(); ++k) row[k] -= g0 * z0[k] + g1 * z1[k];
     }
   }

@@ -116,7 +116,7 @@ inline void add_node(const ChainLink& link, double share, Value& value, double* 
 /// theta_i = theta_{i-1} + axes u, and the joint's second-order terms.
 template <int M>
 void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<M>& columns) {
-  const Mat32& b = link.axes;
+  const Mat32 b = link.axes;  // a copy: what is written below could alias it
   value.gradient.noalias() += b.transpose() * value.torque;
   for (int c = 0; c < 2; ++c) {
     const double b0 = b(0, c), b1 = b(1, c), b2 = b(2, c);
@@ -151,19 +151,20 @@ void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<M>&
   }
 }
 
-/// rows 3..5 += d x rows 0..2, over `count` entries.
-inline void cross_rows(const Vec3& d, const double* v0, const double* v1, const double* v2, double* t0, double* t1,
-                       double* t2, int count) {
+/// rows 3..5 += d x rows 0..2, over `count` entries. The rows do not overlap; the compiler cannot know.
+inline void cross_rows(Vec3 d, const double* __restrict v0, const double* __restrict v1, const double* __restrict v2,
+                       double* __restrict t0, double* __restrict t1, double* __restrict t2, int count) {
+  const double x = d[0], y = d[1], z = d[2];
   for (int k = 0; k < count; ++k) {
-    t0[k] += d[1] * v2[k] - d[2] * v1[k];
-    t1[k] += d[2] * v0[k] - d[0] * v2[k];
-    t2[k] += d[0] * v1[k] - d[1] * v0[k];
+    t0[k] += y * v2[k] - z * v1[k];
+    t1[k] += z * v0[k] - x * v2[k];
+    t2[k] += x * v1[k] - y * v0[k];
   }
 }
 
 /// v_i = v_{i-1} + theta x span, to second order.
 template <int M>
-void pass_span(const Vec3& d, bool geometric, Value& value, Columns<M>& columns) {
+void pass_span(Vec3 d, bool geometric, Value& value, Columns<M>& columns) {
   // Congruence with [I X; 0 I], X = -[d]x: first the right factor on every row, then the left one on every column.
   auto& p = value.p;
   for (int i = 0; i < 6; ++i) {
