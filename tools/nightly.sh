@@ -8,9 +8,6 @@ tools/setup.sh test
 echo "nightly: everything that ./test does"
 ./test
 
-echo "nightly: killed and resumed runs under the sanitizers, which ./test leaves out"
-ctest --preset sanitize --tests-regex '^interface\.resume' --timeout 3600
-
 echo "nightly: clang-tidy on everything"
 tools/tidy.sh
 
