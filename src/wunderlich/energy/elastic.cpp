@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "wunderlich/energy/link_quadrature.hpp"
+#include "wunderlich/energy/link_terms.hpp"
 #include "wunderlich/energy/width_factor.hpp"
 
 namespace wunderlich::energy {
@@ -16,11 +16,6 @@ using geometry::Strains;
 
 namespace {
 
-/// What a link's energy depends on: (kappa, tau, eta) at either end.
-using Ends = Eigen::Matrix<double, 6, 1>;
-using EndsMatrix = Eigen::Matrix<double, 6, 6>;
-constexpr int kEtaA = 2, kEtaB = 5;
-
 /// The chart's share of that: theta of the two segments at either end's hinge, then eta of both ends. A segment may
 /// appear more than once: contributions add up.
 constexpr int kLocal = 14;
@@ -31,65 +26,12 @@ double ruling_ratio(const Ribbon& ribbon, const State& state, int segment) {
   return 0.5 * ribbon.width * (state.eta[s + 1] - state.eta[s]) / ribbon.rest_length[s];
 }
 
-/// A function of the ends with its derivatives.
-struct LinkTerms {
-  double value = 0;
-  Ends gradient = Ends::Zero();
-  EndsMatrix hessian = EndsMatrix::Zero();
-};
-
-/// Adds weight/2 E, E = kappa^2 + 2 tau^2 + tau^2 eta^2, of the end whose kappa stands at `at`.   @eq Shen2015:11
-void add_trapezoid(double weight, const Ends& ends, int at, LinkTerms& terms) {
-  const double kappa = ends[at], tau = ends[at + 1], eta = ends[at + 2], stretch = 2 + eta * eta;
-  terms.value += 0.5 * weight * (kappa * kappa + tau * tau * stretch);
-  terms.gradient.segment<3>(at) += weight * Vec3(kappa, tau * stretch, tau * tau * eta);
-  Mat3 hessian;
-  hessian << 1, 0, 0, 0, stretch, 2 * tau * eta, 0, 2 * tau * eta, tau * tau;
-  terms.hessian.block<3, 3>(at, at) += weight * hessian;
-}
-
-/// The correction knows tau only as kappa eta.
-void add_correction(const LinkQuadrature& rule, double weight, const Ends& ends, LinkTerms& terms) {
-  const LinkEnergy e = correction(rule, weight, {ends[0], ends[2]}, {ends[3], ends[5]});
-  terms.value += e.value;
-  for (int i = 0; i < 2; ++i) {
-    terms.gradient[2 * i] += e.grad_a[i];
-    terms.gradient[3 + 2 * i] += e.grad_b[i];
-    for (int j = 0; j < 2; ++j) {
-      terms.hessian(2 * i, 2 * j) += e.hess_aa(i, j);
-      terms.hessian(2 * i, 3 + 2 * j) += e.hess_ab(i, j);
-      terms.hessian(3 + 2 * i, 2 * j) += e.hess_ab(j, i);
-      terms.hessian(3 + 2 * i, 3 + 2 * j) += e.hess_bb(i, j);
-    }
-  }
-}
-
-/// Multiplies by phi(x), x = slope (eta_b - eta_a).
-void multiply(const WidthFactor& phi, double slope, LinkTerms& terms) {
-  Ends x = Ends::Zero();
-  x[kEtaA] = -slope;
-  x[kEtaB] = slope;
-  terms.hessian *= phi.value;
-  terms.hessian += phi.first * (x * terms.gradient.transpose() + terms.gradient * x.transpose());
-  terms.hessian += phi.second * terms.value * x * x.transpose();
-  terms.gradient = (phi.value * terms.gradient + phi.first * terms.value * x).eval();
-  terms.value *= phi.value;
-}
-
 /// Energy of one link. The strains of a loop's node 0 are those of the seam's hinge, seen from the start.
 LinkTerms link_terms(const Ribbon& ribbon, const Model& model, const State& state, const Strains& strain, int segment) {
   const auto s = static_cast<std::size_t>(segment);
   Ends ends;
   ends << strain.kappa[s], strain.tau[s], state.eta[s], strain.kappa[s + 1], strain.tau[s + 1], state.eta[s + 1];
-  const LinkQuadrature& rule = quadrature(ribbon, model, s);
-  const double weight = 0.5 * ribbon.bending_stiffness * ribbon.width * ribbon.rest_length[s];
-  LinkTerms terms;
-  add_trapezoid((1 - rule.midpoint) * weight, ends, 0, terms);
-  add_trapezoid((1 - rule.midpoint) * weight, ends, 3, terms);
-  if (rule.midpoint != 0) add_correction(rule, weight, ends, terms);
-  multiply(width_factor(model, ruling_ratio(ribbon, state, segment)), 0.5 * ribbon.width / ribbon.rest_length[s],
-           terms);
-  return terms;
+  return link_terms(ribbon, model, s, ends);
 }
 
 /// The hinge whose strain a node shows, with its derivatives; none (before = after = -1) at a free end.

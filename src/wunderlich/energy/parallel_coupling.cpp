@@ -26,12 +26,18 @@ double parallel_value(const Ribbon& ribbon, double parallel_weight, const State&
   return parallel_weight * sum;
 }
 
+Vec3 parallel_pull(const Ribbon& ribbon, double parallel_weight, const State& state, int segment) {
+  const auto s = static_cast<std::size_t>(segment);
+  const double length = ribbon.rest_length[s];
+  const Vec3 apart = (state.r[s + 1] - state.r[s]) / length - state.q[s] * Vec3::UnitZ();
+  return 2 * parallel_weight / length * apart;
+}
+
 void add_parallel_gradient(const Ribbon& ribbon, double parallel_weight, const State& state,
                            Eigen::VectorXd& gradient) {
   for (int s = 0; s < ribbon.segments; ++s) {
-    const auto k = static_cast<std::size_t>(s);
     const Vec3 edge = edge_in_frame(ribbon, state, s);
-    const Vec3 pull = state.q[k] * Vec3(2 * parallel_weight / ribbon.rest_length[k] * (edge - Vec3::UnitZ()));
+    const Vec3 pull = parallel_pull(ribbon, parallel_weight, state, s);
     gradient.segment<3>(geometry::r_index(s)) -= pull;
     gradient.segment<3>(geometry::r_index(s + 1)) += pull;
     // |edge| does not change with theta: the rest is -2 edge . (theta x e3).

@@ -13,6 +13,9 @@ void add_parallel_gradient(const geometry::Ribbon& ribbon, double parallel_weigh
 void add_parallel_hessian(const geometry::Ribbon& ribbon, double parallel_weight, const geometry::State& state,
                           geometry::Triplets& hessian);
 
+/// -dE_para/dr_s = +dE_para/dr_{s+1} of one segment: the force that turns its edge towards d3, on its first node [N].
+Vec3 parallel_pull(const geometry::Ribbon& ribbon, double parallel_weight, const geometry::State& state, int segment);
+
 /// The paper's choice alpha |K_D| / dim K [J], alpha = `weight_scale` in [10, 100]: K is the Hessian of the elastic
 /// energy in (q, eta), K_D its diagonal. In terms of rotation vectors the diagonal of q is 4 times that of theta.
 /// @eq Shen2015:5.1
