@@ -2,7 +2,20 @@
 
 #include <cassert>
 
+#include "wunderlich/math/four.hpp"
+
 namespace wunderlich::geometry {
+
+namespace {
+
+/// q times the rotation of a fold, which has no component along the normal: (x, y, z, w) (0, f, g, c).
+math::Four fold_on(math::Four q, const Fold& fold, double eta) {
+  const double f = fold.half_sin * fold.inverse, g = f * eta;
+  return math::all(fold.half_cos) * q + math::Four{g, -g, g, -g} * math::swap_pairs(q) +
+         math::Four{-f, f, f, -f} * math::swap_halves(q);
+}
+
+}  // namespace
 
 void forward_kinematics(const Ribbon& ribbon, const Chain& chain, Kinematics& k) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
@@ -10,15 +23,18 @@ void forward_kinematics(const Ribbon& ribbon, const Chain& chain, Kinematics& k)
   k.q.resize(n + 1);
   k.frame.resize(n + 1);
   k.fold.resize(n + 1);
-  Quat q = chain.base.frame;
+  math::Four q{chain.base.frame.x(), chain.base.frame.y(), chain.base.frame.z(), chain.base.frame.w()};
   Vec3 r = chain.base.position;
   for (std::size_t i = 0; i <= n; ++i) {
     k.fold[i] = make_fold(fold_length(ribbon, i), chain.kappa[i], chain.eta[i]);
-    if (ribbon.hinge_length[i] > 0) q = q * fold_rotation(k.fold[i], chain.eta[i]);
-    // One Newton step of 1/sqrt keeps the product of many unit quaternions a unit quaternion.
-    q.coeffs() *= 1.5 - 0.5 * q.squaredNorm();
-    k.q[i] = q;
-    k.frame[i] = q.toRotationMatrix();
+    if (ribbon.hinge_length[i] > 0) q = fold_on(q, k.fold[i], chain.eta[i]);
+    k.q[i] = Quat(q[3], q[0], q[1], q[2]);
+    // Now and then a Newton step of 1/sqrt keeps the product of many unit quaternions a unit quaternion.
+    if (i % 8 == 0) {
+      k.q[i].coeffs() *= 1.5 - 0.5 * k.q[i].squaredNorm();
+      q = math::Four{k.q[i].x(), k.q[i].y(), k.q[i].z(), k.q[i].w()};
+    }
+    k.frame[i] = k.q[i].toRotationMatrix();
     k.r[i] = r;
     if (i < n) r += ribbon.rest_length[i] * k.frame[i].col(2);
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "wunderlich/base/types.hpp"
+#include "wunderlich/math/sine.hpp"
 
 namespace wunderlich::geometry {
 
@@ -15,6 +16,7 @@ namespace wunderlich::geometry {
 struct Fold {
   double s2 = 1;        ///< 1 + eta^2
   double s = 1;         ///< |ruling|
+  double inverse = 1;   ///< 1 / |ruling|
   double half_sin = 0;  ///< sin and cos of half the fold angle h kappa s
   double half_cos = 1;
 };
@@ -23,15 +25,16 @@ inline Fold make_fold(double hinge_length, double kappa, double eta) {
   Fold fold;
   fold.s2 = 1 + eta * eta;
   fold.s = std::sqrt(fold.s2);
-  const double half = 0.5 * hinge_length * kappa * fold.s;
-  fold.half_sin = std::sin(half);
-  fold.half_cos = std::cos(half);
+  fold.inverse = 1 / fold.s;
+  const auto [sine, cosine] = math::sine_cosine(0.5 * hinge_length * kappa * fold.s);
+  fold.half_sin = sine;
+  fold.half_cos = cosine;
   return fold;
 }
 
 /// frame of the next segment = frame * fold_rotation
 inline Quat fold_rotation(const Fold& fold, double eta) {
-  const double f = fold.half_sin / fold.s;
+  const double f = fold.half_sin * fold.inverse;
   return Quat(fold.half_cos, 0, f, f * eta);
 }
 
@@ -45,7 +48,7 @@ inline FoldDerivatives fold_derivatives(const Fold& fold, double h, double kappa
   const double sine = 2 * fold.half_sin * fold.half_cos;
   const double versine = 2 * fold.half_sin * fold.half_sin;  // 1 - cos
   const double cosine = 1 - versine;
-  const double i2 = 1 / fold.s2, i1 = 1 / fold.s, hk = h * kappa;
+  const double i1 = fold.inverse, i2 = i1 * i1, hk = h * kappa;
   const double a = hk * eta * i2, b = sine * i1 * i2, c = versine * i2;
   FoldDerivatives d;
   d.kappa = {0, h, h * eta};

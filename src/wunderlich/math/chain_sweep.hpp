@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "wunderlich/base/types.hpp"
+#include "wunderlich/math/four.hpp"
 
 namespace wunderlich::math {
 
@@ -70,10 +71,10 @@ struct ChainSystem {
   bool geometric = true;                         ///< false: leave out the terms that carry forces
 };
 
-/// What a joint keeps from the backward sweep.
+/// What a joint keeps from the backward sweep: u_i = -(v . v_i + theta . theta_{i-1} + previous u_{i-1} + ...).
 struct ChainGain {
-  Eigen::Matrix<double, 2, 6> pose;
-  Mat2 previous;
+  Four v[2], theta[2];  ///< by coordinate; the fourth lane of theta belongs to the gradient
+  Four previous;        ///< 2 x 2, by rows
 };
 
 struct ChainStep {
@@ -87,10 +88,9 @@ struct ChainStep {
 /// Buffers; reused between calls without allocation once they have their size.
 struct ChainWorkspace {
   std::vector<ChainGain> gains;
-  std::vector<double> columns;      ///< per node, 2 x (1 + rows): Z^-1 times the columns
-  std::vector<Vec3> force, torque;  ///< adjoint wrench on link i at node i: exact gradients
-  std::vector<Vec2> gradient;       ///< exact gradient of objective + multipliers * rows in u_i
-  Vec6 base_gradient;               ///< the same in (v_0, theta_base)
+  std::vector<Four> columns;   ///< per node, 2 rows: Z^-1 times the constraint columns, four to a vector
+  std::vector<Vec2> gradient;  ///< exact gradient of objective + multipliers * rows in u_i
+  Vec6 base_gradient;          ///< the same in (v_0, theta_base)
 };
 
 /// Solves for the step. Returns false if a pivot or the Schur complement is singular (the step is then not

@@ -1,66 +1,48 @@
 /// The value function of the chain sweep and what each element of the chain does to it. Internal to math/.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "wunderlich/math/chain_sweep.hpp"
+#include "wunderlich/math/four.hpp"
 
 namespace wunderlich::math::chain {
 
-// The inner loops work on plain arrays with extents known to the compiler: it unrolls and vectorises them, and
-// nothing is allocated. M is the number of right-hand sides (gradient and rows); 0 means known at run time only.
-
-/// Right-hand sides of the value function: rows v (3), theta (3), u (2).
-template <int M>
+/// Constraint columns of the value function, four to a vector: rows v (3), theta (3), u (2).
+/// Q is the number of vectors; -1 means known at run time only.
+template <int Q>
 struct Columns {
-  alignas(16) double value[8][M];
-  explicit Columns(int) { std::fill(&value[0][0], &value[0][0] + 8 * M, 0.0); }
-  static constexpr int count() { return M; }
-  double* row(int i) { return value[i]; }
-  const double* row(int i) const { return value[i]; }
+  Four value[8][Q > 0 ? Q : 1] = {};
+  explicit Columns(int) {}
+  static constexpr int quads() { return Q; }
+  Four* row(int i) { return value[i]; }
+  const Four* row(int i) const { return value[i]; }
 };
 
 template <>
-struct Columns<0> {
-  int columns;
-  std::vector<double> value;
-  explicit Columns(int m) : columns(m), value(8 * static_cast<std::size_t>(m), 0.0) {}
-  int count() const { return columns; }
-  double* row(int i) { return value.data() + i * columns; }
-  const double* row(int i) const { return value.data() + i * columns; }
+struct Columns<-1> {
+  int count;
+  std::vector<Four> value;
+  explicit Columns(int quads) : count(quads), value(8 * static_cast<std::size_t>(quads), all(0)) {}
+  int quads() const { return count; }
+  Four* row(int i) { return value.data() + i * count; }
+  const Four* row(int i) const { return value.data() + i * count; }
 };
 
-/// Gram matrix of the right-hand sides in the inverse Hessian.
-template <int M>
-struct GramOf {
-  static constexpr int size = M == 0 ? Eigen::Dynamic : M;
-  using Type = Eigen::Matrix<double, size, size, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-};
+inline void add_lane(Four* quads, int k, double x) { reinterpret_cast<double*>(quads)[k] += x; }
+inline double lane(const Four* quads, int k) { return reinterpret_cast<const double*>(quads)[k]; }
 
-/// Value function of everything beyond the joint under way, in (v, theta, u).
+/// Value function of everything beyond the joint under way, in (v, theta, u). The blocks of its symmetric Hessian are
+/// kept by rows; where a row's other lanes belong to theta, its fourth is the gradient (the right-hand side).
 struct Value {
-  double p[6][6] = {};                               ///< pose, pose
-  double y[6][2] = {};                               ///< pose, u
-  Mat2 z = Mat2::Zero();                             ///< u, u
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< adjoint wrench: the exact gradient in the pose
-  Vec2 gradient = Vec2::Zero();                      ///< exact gradient in u so far
+  Four vv[3] = {}, vt[3] = {};           ///< rows v: v | theta and gradient
+  Four tt[3] = {};                       ///< rows theta: theta and gradient
+  Four uv[2] = {}, ut[2] = {};           ///< rows u: v | theta and gradient
+  double z00 = 0, z01 = 0, z11 = 0;      ///< u, u
+  Four force = all(0), torque = all(0);  ///< adjoint wrench: the exact gradient in the pose
+  double gradient0 = 0, gradient1 = 0;   ///< exact gradient in u so far
 };
-
-inline int negative_count(const Mat2& z) {
-  const double det = z(0, 0) * z(1, 1) - z(0, 1) * z(1, 0);
-  if (det < 0) return 1;
-  return z(0, 0) + z(1, 1) < 0 ? 2 : 0;
-}
-
-inline bool invert(const Mat2& z, Mat2& inverse) {
-  const double det = z(0, 0) * z(1, 1) - z(0, 1) * z(1, 0);
-  if (det == 0 || !std::isfinite(det)) return false;
-  const double f = 1 / det;
-  inverse << f * z(1, 1), -f * z(0, 1), -f * z(1, 0), f * z(0, 0);
-  return true;
-}
 
 /// Where the sorted lists of pose terms, probe rows and constraint rows stand.
 struct Cursor {
@@ -70,120 +52,126 @@ struct Cursor {
 /// 1, or 0 where the right-hand side is a load of its own.
 inline double gradient_share(const ChainSystem& system) { return system.only_load ? 0.0 : 1.0; }
 
-template <int M>
-void add_row(const ChainRow& row, int k, double share, Value& value, Columns<M>& columns) {
-  const double pose[6] = {row.v[0], row.v[1], row.v[2], row.theta[0], row.theta[1], row.theta[2]};
-  for (int i = 0; i < 6; ++i) {
-    columns.row(i)[k] = pose[i];
-    columns.row(i)[0] += share * row.penalty * row.residual * pose[i];
-    for (int j = 0; j < 6; ++j) value.p[i][j] += row.penalty * pose[i] * pose[j];
+template <int Q>
+void add_row(const ChainRow& row, int k, double share, Value& value, Columns<Q>& columns) {
+  const Four v = four(row.v), theta = four(row.theta, share * row.residual);
+  for (int i = 0; i < 3; ++i) {
+    add_lane(columns.row(i), k, row.v[i]);
+    add_lane(columns.row(3 + i), k, row.theta[i]);
+    value.vv[i] += all(row.penalty * row.v[i]) * v;
+    value.vt[i] += all(row.penalty * row.v[i]) * theta;
+    value.tt[i] += all(row.penalty * row.theta[i]) * theta;
   }
-  columns.row(6)[k] = row.u[0];
-  columns.row(7)[k] = row.u[1];
-  value.force += row.multiplier * row.v;
-  value.torque += row.multiplier * row.theta;
-  value.gradient += row.multiplier * row.u;
+  add_lane(columns.row(6), k, row.u[0]);
+  add_lane(columns.row(7), k, row.u[1]);
+  value.force += all(row.multiplier) * four(row.v);
+  value.torque += all(row.multiplier) * four(row.theta);
+  value.gradient0 += row.multiplier * row.u[0];
+  value.gradient1 += row.multiplier * row.u[1];
 }
 
-/// A pose term's or row's share at its link; row k is column k + 1.
-template <int M>
-void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Columns<M>& columns) {
+inline void add_pose_term(const PoseTerm& term, double share, Value& value) {
+  for (int i = 0; i < 3; ++i) {
+    value.vv[i] += four(term.hessian.block<1, 3>(i, 0).transpose());
+    value.vt[i] += four(term.hessian.block<1, 3>(i, 3).transpose(), share * term.gradient[i]);
+    value.tt[i] += four(term.hessian.block<1, 3>(3 + i, 3).transpose(), share * term.gradient[3 + i]);
+  }
+  value.force += four(term.gradient.head<3>());
+  value.torque += four(term.gradient.tail<3>());
+}
+
+/// A pose term's or row's share at its link; row k is constraint column k.
+template <int Q>
+void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Columns<Q>& columns) {
   for (; next.term < system.pose_terms.size() && system.pose_terms[next.term].node == node; ++next.term) {
-    const PoseTerm& term = system.pose_terms[next.term];
-    for (int i = 0; i < 6; ++i) {
-      columns.row(i)[0] += gradient_share(system) * term.gradient[i];
-      for (int j = 0; j < 6; ++j) value.p[i][j] += term.hessian(i, j);
-    }
-    value.force += term.gradient.head<3>();
-    value.torque += term.gradient.tail<3>();
+    add_pose_term(system.pose_terms[next.term], gradient_share(system), value);
   }
   const auto take = [&](std::size_t index) {
-    add_row(system.rows[index], static_cast<int>(index) + 1, gradient_share(system), value, columns);
+    add_row(system.rows[index], static_cast<int>(index), gradient_share(system), value, columns);
   };
   const std::size_t probes = system.probe_count();
   while (next.probe < probes && system.rows[next.probe].node == node) take(next.probe++);
   while (next.row < system.rows.size() && system.rows[next.row].node == node) take(next.row++);
 }
 
-inline void add_node(const ChainLink& link, double share, Value& value, double* v0, double* v1, double* v2) {
-  for (int i = 0; i < 3; ++i) value.p[i][i] += link.stiffness;
-  v0[0] += share * link.force[0];
-  v1[0] += share * link.force[1];
-  v2[0] += share * link.force[2];
-  value.force += link.force;
+inline void add_node(const ChainLink& link, double share, Value& value) {
+  const double k = link.stiffness;
+  value.vv[0] += Four{k, 0, 0, 0};
+  value.vv[1] += Four{0, k, 0, 0};
+  value.vv[2] += Four{0, 0, k, 0};
+  for (int i = 0; i < 3; ++i) value.vt[i] += last_lane(share * link.force[i]);
+  value.force += four(link.force);
+}
+
+/// out += a[0] rows[0] + a[1] rows[1] + a[2] rows[2], over `count` vectors.
+inline void add_combination(const Vec3& a, const Four* x, const Four* y, const Four* z, Four* out, int count) {
+  const Four a0 = all(a[0]), a1 = all(a[1]), a2 = all(a[2]);
+  for (int k = 0; k < count; ++k) out[k] += a0 * x[k] + a1 * y[k] + a2 * z[k];
 }
 
 /// theta_i = theta_{i-1} + axes u, and the joint's second-order terms.
-template <int M>
-void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<M>& columns) {
-  const Mat32 b = link.axes;  // a copy: what is written below could alias it
-  value.gradient.noalias() += b.transpose() * value.torque;
+template <int Q>
+void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<Q>& columns) {
+  const Vec3 axis0 = link.axes.col(0), axis1 = link.axes.col(1);
+  const Four b0 = four(axis0), b1 = four(axis1), torque = value.torque;
+  const Four old0 = value.ut[0], old1 = value.ut[1];
+  add_combination(axis0, &value.tt[0], &value.tt[1], &value.tt[2], &value.ut[0], 1);
+  add_combination(axis1, &value.tt[0], &value.tt[1], &value.tt[2], &value.ut[1], 1);
+  value.uv[0] += lane_sums(value.vt[0] * b0, value.vt[1] * b0, value.vt[2] * b0);
+  value.uv[1] += lane_sums(value.vt[0] * b1, value.vt[1] * b1, value.vt[2] * b1);
+  const Four z = lane_sums((old0 + value.ut[0]) * b0, old0 * b1 + value.ut[1] * b0, (old1 + value.ut[1]) * b1);
+  value.z00 += z[0];
+  value.z01 += z[1];
+  value.z11 += z[2];
   for (int c = 0; c < 2; ++c) {
-    const double b0 = b(0, c), b1 = b(1, c), b2 = b(2, c);
-    double* u = columns.row(6 + c);
-    const double *t0 = columns.row(3), *t1 = columns.row(4), *t2 = columns.row(5);
-    for (int k = 0; k < columns.count(); ++k) u[k] += b0 * t0[k] + b1 * t1[k] + b2 * t2[k];
+    add_combination(c == 0 ? axis0 : axis1, columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c),
+                    columns.quads());
   }
-  double pb[6][2];
-  for (int i = 0; i < 6; ++i) {
-    for (int c = 0; c < 2; ++c) pb[i][c] = value.p[i][3] * b(0, c) + value.p[i][4] * b(1, c) + value.p[i][5] * b(2, c);
-  }
-  for (int c = 0; c < 2; ++c) {
-    for (int e = 0; e < 2; ++e) {
-      double sum = 0;
-      for (int k = 0; k < 3; ++k) {
-        sum += b(k, c) * (value.y[3 + k][e] + pb[3 + k][e]) + value.y[3 + k][c] * b(k, e);
-      }
-      value.z(c, e) += sum;
-    }
-  }
-  for (int i = 0; i < 6; ++i) {
-    for (int c = 0; c < 2; ++c) value.y[i][c] += pb[i][c];
-  }
+  value.gradient0 += dot3(b0, torque);
+  value.gradient1 += dot3(b1, torque);
   if (!geometric) return;
-  const double z01 = value.torque.dot(link.axes_01);
-  value.z(0, 1) += z01;
-  value.z(1, 0) += z01;
-  value.z(1, 1) += value.torque.dot(link.axes_11);
-  for (int c = 0; c < 2; ++c) {
-    const Vec3 half = 0.5 * b.col(c).cross(value.torque);
-    for (int k = 0; k < 3; ++k) value.y[3 + k][c] += half[k];
-  }
+  value.z01 += dot3(torque, four(link.axes_01));
+  value.z11 += dot3(torque, four(link.axes_11));
+  value.ut[0] += all(0.5) * cross(b0, torque);
+  value.ut[1] += all(0.5) * cross(b1, torque);
 }
 
-/// rows 3..5 += d x rows 0..2, over `count` entries. The rows do not overlap; the compiler cannot know.
-inline void cross_rows(Vec3 d, const double* __restrict v0, const double* __restrict v1, const double* __restrict v2,
-                       double* __restrict t0, double* __restrict t1, double* __restrict t2, int count) {
-  const double x = d[0], y = d[1], z = d[2];
+/// c += d x a, for rows a, c of three of `count` vectors each.
+inline void add_cross_rows(const Vec3& d, const Four* a0, const Four* a1, const Four* a2, Four* c0, Four* c1, Four* c2,
+                           int count) {
+  const Four x = all(d[0]), y = all(d[1]), z = all(d[2]);
   for (int k = 0; k < count; ++k) {
-    t0[k] += y * v2[k] - z * v1[k];
-    t1[k] += z * v0[k] - x * v2[k];
-    t2[k] += x * v1[k] - y * v0[k];
+    c0[k] += y * a2[k] - z * a1[k];
+    c1[k] += z * a0[k] - x * a2[k];
+    c2[k] += x * a1[k] - y * a0[k];
   }
 }
 
 /// v_i = v_{i-1} + theta x span, to second order.
-template <int M>
-void pass_span(Vec3 d, bool geometric, Value& value, Columns<M>& columns) {
-  // Congruence with [I X; 0 I], X = -[d]x: first the right factor on every row, then the left one on every column.
-  auto& p = value.p;
-  for (int i = 0; i < 6; ++i) {
-    p[i][3] += d[1] * p[i][2] - d[2] * p[i][1];
-    p[i][4] += d[2] * p[i][0] - d[0] * p[i][2];
-    p[i][5] += d[0] * p[i][1] - d[1] * p[i][0];
-  }
-  cross_rows(d, p[0], p[1], p[2], p[3], p[4], p[5], 6);
-  cross_rows(d, value.y[0], value.y[1], value.y[2], value.y[3], value.y[4], value.y[5], 2);
-  cross_rows(d, columns.row(0), columns.row(1), columns.row(2), columns.row(3), columns.row(4), columns.row(5),
-             columns.count());
+template <int Q>
+void pass_span(const Vec3& span, bool geometric, Value& value, Columns<Q>& columns) {
+  // Congruence with [I X; 0 I], X = -[d]x: first the left factor on the rows theta, then the right one on every row.
+  const Four d = four(span);
+  add_cross_rows(span, &value.vt[0], &value.vt[1], &value.vt[2], &value.tt[0], &value.tt[1], &value.tt[2], 1);
+  add_cross_rows(span, columns.row(0), columns.row(1), columns.row(2), columns.row(3), columns.row(4), columns.row(5),
+                 columns.quads());
+  for (int i = 0; i < 3; ++i) value.vt[i] += cross(d, value.vv[i]);
+  Four t0 = value.vt[0], t1 = value.vt[1], t2 = value.vt[2];
+  transpose3(t0, t1, t2);
+  value.tt[0] += cross(d, t0);
+  value.tt[1] += cross(d, t1);
+  value.tt[2] += cross(d, t2);
+  value.ut[0] += cross(d, value.uv[0]);
+  value.ut[1] += cross(d, value.uv[1]);
   if (geometric) {
-    const double work = value.force.dot(d);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) p[3 + i][3 + j] += 0.5 * (d[i] * value.force[j] + d[j] * value.force[i]);
-      p[3 + i][3 + i] -= work;
-    }
+    const Four half_force = all(0.5) * value.force, half_span = all(0.5) * d;
+    const double work = dot3(value.force, d);
+    for (int i = 0; i < 3; ++i) value.tt[i] += all(span[i]) * half_force + all(value.force[i]) * half_span;
+    value.tt[0] -= Four{work, 0, 0, 0};
+    value.tt[1] -= Four{0, work, 0, 0};
+    value.tt[2] -= Four{0, 0, work, 0};
   }
-  value.torque += d.cross(value.force);
+  value.torque += cross(d, value.force);
 }
 
 }  // namespace wunderlich::math::chain

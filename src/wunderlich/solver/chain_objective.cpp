@@ -27,12 +27,16 @@ double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem, std::si
   return problem.barrier * ribbon.bending_stiffness * ribbon.rest_length[segment] / ribbon.width;
 }
 
+/// A node as an end of a link; the weight depends on the link.
 energy::LinkEnd link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                         std::size_t link, std::size_t node) {
+                         std::size_t node) {
   const double h = geometry::fold_length(ribbon, node), kappa = chain.kappa[node], eta = chain.eta[node];
-  // Half the link belongs to each end's hinge, nothing where there is none.
-  const double weight = h > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
-  return {kappa, eta, energy::bending(problem.model.strain, h, kappa, eta, k.fold[node]), weight};
+  return {kappa, eta, energy::bending(problem.model.strain, h, kappa, eta, k.fold[node]), 0};
+}
+
+/// Half the link belongs to each end's hinge, nothing where there is none.
+double end_weight(const Ribbon& ribbon, std::size_t link, std::size_t node) {
+  return geometry::fold_length(ribbon, node) > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
 }
 
 /// Turn of the frame `q` about its tangent against `reference` transported along the shortest rotation of the
@@ -79,14 +83,6 @@ Closure closure(const Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
   return {k.r.back() - k.r.front(), math::log_map(k.q.back() * ghost.conjugate()),
           Vec2(chain.kappa.back() - ribbon.seam_sign() * chain.kappa.front(),
                chain.eta.back() - ribbon.seam_sign() * chain.eta.front())};
-}
-
-std::size_t hold_rows(const Hold& hold) {
-  std::size_t count = 0;
-  for (const bool held : hold.position) count += held ? 1 : 0;
-  if (hold.orientation == Orientation::full) count += 3;
-  if (hold.orientation == Orientation::about_tangent) count += 1;
-  return count;
 }
 
 Vec3 in_space(const PointLoad& load, const Vec3& vector, const Quat& frame) {
@@ -160,11 +156,39 @@ void fill_joint(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, s
   }
   // Axes are given before the fold; carry them with the frame before it: q_{i-1} = q_i fold^-1.
   const geometry::FoldDerivatives d = geometry::fold_derivatives(k.fold[i], h, chain.kappa[i], chain.eta[i]);
-  const Mat3 before = i > 0 ? k.frame[i - 1] : Mat3(chain.base.frame.toRotationMatrix());
-  link.axes.col(0) = before * d.kappa;
-  link.axes.col(1) = before * d.eta;
-  link.axes_01 = before * d.kappa_eta;
-  link.axes_11 = before * d.eta_eta;
+  const Mat3 base = i > 0 ? Mat3() : Mat3(chain.base.frame.toRotationMatrix());
+  const Mat3& before = i > 0 ? k.frame[i - 1] : base;
+  const math::Four d1 = math::four(before.col(0)), d2 = math::four(before.col(1)), d3 = math::four(before.col(2));
+  const auto in_space = [&](const Vec3& v) -> Vec3 {
+    return math::first_three(math::all(v[0]) * d1 + math::all(v[1]) * d2 + math::all(v[2]) * d3);
+  };
+  link.axes.col(0) = in_space(d.kappa);
+  link.axes.col(1) = in_space(d.eta);
+  link.axes_01 = in_space(d.kappa_eta);
+  link.axes_11 = in_space(d.eta_eta);
+}
+
+void fill_node(const Ribbon& ribbon, const ChainProblem& problem, const Kinematics& k, std::size_t i, ChainLink& link) {
+  link.stiffness = problem.proximity * ribbon.hinge_length[i];
+  link.force = -problem.force[i];
+  if (problem.proximity > 0) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
+}
+
+void fill_link(const Ribbon& ribbon, const ChainProblem& problem, std::size_t i, const energy::LinkEnd& a,
+               const energy::LinkEnd& b, ChainLink& link) {
+  const double slope = 0.5 * ribbon.width / ribbon.rest_length[i], x = slope * (b.eta - a.eta);
+  const double e1 = barrier_weight(ribbon, problem, i);
+  energy::WidthFactor barrier = energy::ruling_barrier(x);
+  barrier.value *= e1;
+  barrier.first *= e1;
+  barrier.second *= e1;
+  const energy::LinkEnergy e = energy::link_energy(energy::width_factor(problem.model, x), barrier, slope,
+                                                   energy::quadrature(ribbon, problem.model, i), a, b);
+  link.grad_a = e.grad_a;
+  link.grad_b = e.grad_b;
+  link.hess_aa = e.hess_aa;
+  link.hess_ab = e.hess_ab;
+  link.hess_bb = e.hess_bb;
 }
 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
@@ -230,9 +254,17 @@ void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics
 
 }  // namespace
 
+std::size_t row_count(const Hold& hold) {
+  std::size_t count = 0;
+  for (const bool held : hold.position) count += held ? 1 : 0;
+  if (hold.orientation == Orientation::full) count += 3;
+  if (hold.orientation == Orientation::about_tangent) count += 1;
+  return count;
+}
+
 std::size_t row_count(const ChainProblem& problem) {
   std::size_t count = problem.closed ? 8 : 0;
-  for (const Hold& hold : problem.holds) count += hold_rows(hold);
+  for (const Hold& hold : problem.holds) count += row_count(hold);
   return count;
 }
 
@@ -240,12 +272,15 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
                          const Kinematics& reference) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   ObjectiveValue value;
+  energy::LinkEnd b = link_end(ribbon, problem, chain, k, 0);
   for (std::size_t s = 0; s < n; ++s) {
-    const double x = 0.5 * ribbon.width * (chain.eta[s + 1] - chain.eta[s]) / ribbon.rest_length[s];
-    const double bent =
-        energy::link_bending(energy::quadrature(ribbon, problem.model, s), link_end(ribbon, problem, chain, k, s, s),
-                             link_end(ribbon, problem, chain, k, s, s + 1));
-    value.elastic += bent * energy::width_factor(problem.model, x).value;
+    energy::LinkEnd a = b;
+    b = link_end(ribbon, problem, chain, k, s + 1);
+    a.weight = end_weight(ribbon, s, s);
+    b.weight = end_weight(ribbon, s, s + 1);
+    const double x = 0.5 * ribbon.width * (b.eta - a.eta) / ribbon.rest_length[s];
+    value.elastic += energy::link_bending(energy::quadrature(ribbon, problem.model, s), a, b) *
+                     energy::width_factor(problem.model, x).value;
     value.barrier += barrier_weight(ribbon, problem, s) * energy::ruling_barrier(x).value;
   }
   for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i] - reference.r[i]);
@@ -283,29 +318,18 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   const auto n = static_cast<std::size_t>(ribbon.segments);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
+  energy::LinkEnd b = link_end(ribbon, problem, chain, k, 0);
   for (std::size_t i = 0; i <= n; ++i) {
     ChainLink& link = system.links[i];
     fill_joint(ribbon, chain, k, i, link);
-    link.stiffness = problem.proximity * ribbon.hinge_length[i];
-    link.force = -problem.force[i];
-    if (problem.proximity > 0) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
+    fill_node(ribbon, problem, k, i, link);
     if (i == n) break;
+    energy::LinkEnd a = b;
+    b = link_end(ribbon, problem, chain, k, i + 1);
+    a.weight = end_weight(ribbon, i, i);
+    b.weight = end_weight(ribbon, i, i + 1);
+    fill_link(ribbon, problem, i, a, b, link);
     link.span = ribbon.rest_length[i] * k.frame[i].col(2);
-    const double slope = 0.5 * ribbon.width / ribbon.rest_length[i];
-    const double x = slope * (chain.eta[i + 1] - chain.eta[i]);
-    const double e1 = barrier_weight(ribbon, problem, i);
-    energy::WidthFactor barrier = energy::ruling_barrier(x);
-    barrier.value *= e1;
-    barrier.first *= e1;
-    barrier.second *= e1;
-    const energy::LinkEnergy e = energy::link_energy(
-        energy::width_factor(problem.model, x), barrier, slope, energy::quadrature(ribbon, problem.model, i),
-        link_end(ribbon, problem, chain, k, i, i), link_end(ribbon, problem, chain, k, i, i + 1));
-    link.grad_a = e.grad_a;
-    link.grad_b = e.grad_b;
-    link.hess_aa = e.hess_aa;
-    link.hess_ab = e.hess_ab;
-    link.hess_bb = e.hess_bb;
   }
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);

@@ -17,7 +17,8 @@ struct Hold {
   int node = 0;                                    ///< link whose node and frame are held; N: the end frame
   std::array<bool, 3> position{true, true, true};  ///< world axes
   constraint::Orientation orientation = constraint::Orientation::full;
-  Pose target;  ///< about_tangent: the frame to be transported and turned
+  Pose target;   ///< about_tangent: the frame to be transported and turned
+  int end = -1;  ///< end of the strip (0, 1) whose support this is; -1: none
 };
 
 /// A force and torque on the pose of one link (N: the end frame, -1: the base, the start node's own frame).
@@ -42,7 +43,8 @@ struct ChainProblem {
   std::array<bool, 6> base_fixed{};  ///< position and rotation of the base
 };
 
-/// Number of constraint rows.
+/// Number of constraint rows: the closure's first, then those of each hold in turn.
+std::size_t row_count(const Hold& hold);
 std::size_t row_count(const ChainProblem& problem);
 
 /// Elastic energy with and without barrier, and everything else that is minimised.

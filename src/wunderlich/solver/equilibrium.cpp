@@ -240,11 +240,14 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
     reactions.force[0] = work.sweep.base_gradient.head<3>();
     reactions.torque[0] = work.sweep.base_gradient.tail<3>();
   }
-  for (const math::ChainRow& row : work.system.rows) {
-    if (row.node != 0 && row.node != ribbon.segments) continue;
-    const std::size_t end = row.node == 0 ? 0 : 1;
-    reactions.force[end] -= row.multiplier * row.v;
-    reactions.torque[end] -= row.multiplier * row.theta;
+  // After the probes of the loads, the rows of each hold in turn.
+  auto row = work.system.rows.begin() + static_cast<std::ptrdiff_t>(work.system.probe_count() + (problem.closed ? 8 : 0));
+  for (const Hold& hold : problem.holds) {
+    for (std::size_t k = 0; k < row_count(hold); ++k, ++row) {
+      if (hold.end < 0) continue;
+      reactions.force[static_cast<std::size_t>(hold.end)] -= row->multiplier * row->v;
+      reactions.torque[static_cast<std::size_t>(hold.end)] -= row->multiplier * row->theta;
+    }
   }
   return reactions;
 }

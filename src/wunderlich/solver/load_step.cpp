@@ -34,6 +34,8 @@ Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index,
   hold.node = held_link(support);
   hold.position = support.hold_position;
   hold.orientation = support.orientation;
+  if (!path.ribbon.is_loop() && support.node == 0) hold.end = 0;
+  if (!path.ribbon.is_loop() && support.node == path.ribbon.segments) hold.end = 1;
   hold.target = pose_of(path, state, index, t);
   if (support.orientation == Orientation::about_tangent) {
     // Held against the frame of the last step, carried along with the tangent and turned by what the motion asks.

@@ -1,0 +1,101 @@
+/// Four doubles that are added and multiplied at once: three-vectors with a fourth entry to spare.
+///
+/// With AVX the compiler's own vector of four; without it two vectors of two, because compilers split a vector of four
+/// badly. The layout in memory is the same, so that code compiled either way can be linked.
+#pragma once
+
+#include "wunderlich/base/types.hpp"
+
+namespace wunderlich::math {
+
+#ifdef __AVX__
+
+using Four = double __attribute__((vector_size(32)));
+
+inline Four all(double x) { return Four{x, x, x, x}; }
+
+/// (y, z, x, w) and (z, x, y, w): the two turned copies in a cross product.
+inline Four turn_left(Four a) { return __builtin_shufflevector(a, a, 1, 2, 0, 3); }
+inline Four turn_right(Four a) { return __builtin_shufflevector(a, a, 2, 0, 1, 3); }
+
+/// (y, x, w, z) and (z, w, x, y).
+inline Four swap_pairs(Four a) { return __builtin_shufflevector(a, a, 1, 0, 3, 2); }
+inline Four swap_halves(Four a) { return __builtin_shufflevector(a, a, 2, 3, 0, 1); }
+
+/// Sums of the lanes of a, b and c, in the first three lanes.
+inline Four lane_sums(Four a, Four b, Four c) {
+  const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cc = __builtin_shufflevector(c, c, 0, 0, 2, 2) + __builtin_shufflevector(c, c, 1, 1, 3, 3);
+  return __builtin_shufflevector(ab, cc, 0, 1, 4, 5) + __builtin_shufflevector(ab, cc, 2, 3, 6, 7);
+}
+
+/// Turns the rows a, b, c into columns; their fourth lanes are lost, those of the results are anything finite.
+inline void transpose3(Four& a, Four& b, Four& c) {
+  const Four low = __builtin_shufflevector(a, b, 0, 4, 2, 6), high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  a = __builtin_shufflevector(low, c, 0, 1, 4, 4);
+  b = __builtin_shufflevector(high, c, 0, 1, 5, 5);
+  c = __builtin_shufflevector(low, c, 2, 3, 6, 6);
+}
+
+#else
+
+using Two = double __attribute__((vector_size(16)));
+
+struct alignas(32) Four {
+  Two low, high;
+  Four() = default;
+  constexpr Four(Two a, Two b) : low(a), high(b) {}
+  constexpr Four(double x, double y, double z, double w) : low{x, y}, high{z, w} {}
+  double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
+  Four& operator+=(Four o) { return low += o.low, high += o.high, *this; }
+  Four& operator-=(Four o) { return low -= o.low, high -= o.high, *this; }
+};
+
+inline Four operator+(Four a, Four b) { return {a.low + b.low, a.high + b.high}; }
+inline Four operator-(Four a, Four b) { return {a.low - b.low, a.high - b.high}; }
+inline Four operator-(Four a) { return {-a.low, -a.high}; }
+inline Four operator*(Four a, Four b) { return {a.low * b.low, a.high * b.high}; }
+inline Four all(double x) { return {Two{x, x}, Two{x, x}}; }
+
+inline Four turn_left(Four a) {
+  return {__builtin_shufflevector(a.low, a.high, 1, 2), __builtin_shufflevector(a.low, a.high, 0, 3)};
+}
+inline Four turn_right(Four a) {
+  return {__builtin_shufflevector(a.low, a.high, 2, 0), __builtin_shufflevector(a.low, a.high, 1, 3)};
+}
+
+inline Four swap_pairs(Four a) {
+  return {__builtin_shufflevector(a.low, a.low, 1, 0), __builtin_shufflevector(a.high, a.high, 1, 0)};
+}
+inline Four swap_halves(Four a) { return {a.high, a.low}; }
+
+inline Four lane_sums(Four a, Four b, Four c) {
+  const Two p = a.low + a.high, q = b.low + b.high, r = c.low + c.high;
+  const Two pq = __builtin_shufflevector(p, q, 0, 2) + __builtin_shufflevector(p, q, 1, 3);
+  return {pq, __builtin_shufflevector(r, r, 0, 0) + __builtin_shufflevector(r, r, 1, 1)};
+}
+
+inline void transpose3(Four& a, Four& b, Four& c) {
+  const Four x{__builtin_shufflevector(a.low, b.low, 0, 2), __builtin_shufflevector(c.low, c.low, 0, 0)};
+  const Four y{__builtin_shufflevector(a.low, b.low, 1, 3), __builtin_shufflevector(c.low, c.low, 1, 1)};
+  c = {__builtin_shufflevector(a.high, b.high, 0, 2), __builtin_shufflevector(c.high, c.high, 0, 0)};
+  a = x;
+  b = y;
+}
+
+#endif
+
+inline Four four(const Vec3& a, double fourth = 0) { return Four{a[0], a[1], a[2], fourth}; }
+inline Four last_lane(double x) { return Four{0, 0, 0, x}; }
+inline Vec3 first_three(Four a) { return {a[0], a[1], a[2]}; }
+
+/// a x b in the first three lanes; the fourth is finite if those of a and b are, and 0 if they are.
+inline Four cross(Four a, Four b) { return turn_left(a) * turn_right(b) - turn_right(a) * turn_left(b); }
+
+/// a . b of the first three lanes.
+inline double dot3(Four a, Four b) {
+  const Four p = a * b;
+  return p[0] + p[1] + p[2];
+}
+
+}  // namespace wunderlich::math
