@@ -76,9 +76,9 @@ inline State closed_strip(const Ribbon& ribbon, const std::vector<Vec3>& points,
   std::vector<Vec3> tangent(n);
   for (std::size_t s = 0; s < n; ++s) tangent[s] = (points[s + 1] - points[s]).normalized();
   std::vector<Quat> carried(n + 1);
-  carried[0] = Quat::FromTwoVectors(Vec3::UnitZ(), tangent[0]);
+  carried[0] = math::shortest_rotation(Vec3::UnitZ(), tangent[0]);
   for (std::size_t s = 1; s <= n; ++s) {
-    carried[s] = Quat::FromTwoVectors(tangent[s - 1], tangent[s % n]) * carried[s - 1];
+    carried[s] = math::shortest_rotation(tangent[s - 1], tangent[s % n]) * carried[s - 1];
   }
   const Vec3 missing = math::log_map(carried[n].conjugate() * across_seam(ribbon, carried[0]));
   const double turn = missing.z() + 2 * std::numbers::pi * whole_turns;

@@ -42,7 +42,7 @@ TurnAngle turn_about_tangent(Quat p) {
 }  // namespace
 
 Quat transported(const Quat& frame, const Vec3& tangent) {
-  return (Quat::FromTwoVectors(frame * Vec3::UnitZ(), tangent) * frame).normalized();
+  return (math::shortest_rotation(frame * Vec3::UnitZ(), tangent) * frame).normalized();
 }
 
 int rows(const Ribbon&, const Pin& c) { return c.axes[0] + c.axes[1] + c.axes[2]; }

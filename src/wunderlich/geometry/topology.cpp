@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "wunderlich/math/rotation.hpp"
+
 namespace wunderlich::geometry {
 
 namespace {
@@ -25,7 +27,7 @@ Direction direction(const Vec3& along, const Quat& frame) {
 
 /// Angle in (-pi, pi] about b.tangent from a.normal, carried along the shortest rotation, to b.normal.
 double turn_between(const Direction& a, const Direction& b) {
-  const Quat transport = Quat::FromTwoVectors(a.tangent, b.tangent);
+  const Quat transport = math::shortest_rotation(a.tangent, b.tangent);
   const Vec3 carried = transport * a.normal;
   return std::atan2(carried.cross(b.normal).dot(b.tangent), carried.dot(b.normal));
 }

@@ -32,6 +32,15 @@ CotangentFactor cotangent_factor(double s) {
 
 }  // namespace
 
+// By the bisector, which stays exact where 1 + from . to cancels. Eigen's FromTwoVectors asks a singular value
+// decomposition for the axis of opposite vectors, and compiling it takes longer than the rest of a file.
+Quat shortest_rotation(const Vec3& from, const Vec3& to) {
+  const Vec3 bisector = from + to;
+  const double length = bisector.norm();
+  const Vec3 axis = length < 1e-12 ? from.unitOrthogonal() : Vec3(from.cross(bisector) / length);
+  return Quat(0.5 * length, axis.x(), axis.y(), axis.z());
+}
+
 Mat3 left_jacobian(const Vec3& v) {
   const double s = v.squaredNorm();
   const double angle = std::sqrt(s);

@@ -45,6 +45,10 @@ inline Vec3 log_map(const Quat& q) {
   return vec * (2 * std::atan2(sine, w) / sine);
 }
 
+/// The smallest rotation that takes the unit vector `from` to the unit vector `to`. Of opposite vectors (nearer to it
+/// than 1e-12) the half turn about one direction square to `from`, which then is arbitrary but always the same.
+Quat shortest_rotation(const Vec3& from, const Vec3& to);
+
 /// J_l(v); see the head of this file.
 Mat3 left_jacobian(const Vec3& v);
 inline Mat3 right_jacobian(const Vec3& v) { return left_jacobian(-v); }
