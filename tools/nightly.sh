@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Slower checks than ./test has time for, some 90 minutes on two cores: clang-tidy on every source, tests repeated in
-# random order, half an hour of fuzzing, the core compiled against libc++, and coverage (build/coverage/report).
+# Slower checks than ./test has time for, some two hours on two cores: clang-tidy on every source, every check of the
+# sanitizers, tests repeated in random order, half an hour of fuzzing, the core compiled against libc++, and coverage
+# (build/coverage/report).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh test
@@ -10,6 +11,11 @@ echo "nightly: everything that ./test does"
 
 echo "nightly: clang-tidy on everything"
 tools/tidy.sh
+
+echo "nightly: the tests under every check of the sanitizers"
+cmake --preset sanitize-all
+cmake --build --preset sanitize-all
+ctest --preset sanitize-all -j "$(nproc)"
 
 echo "nightly: unit tests, 10 times in random order"
 GTEST_SHUFFLE=1 ctest --preset release -j "$(nproc)" --schedule-random --repeat until-fail:10

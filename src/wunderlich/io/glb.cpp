@@ -82,6 +82,7 @@ Json primitive(Buffer& buffer, const std::vector<Frame>& frames) {
 
 std::vector<float> key_times(const std::vector<Frame>& frames) {
   std::vector<float> times;
+  times.reserve(frames.size());
   for (const Frame& frame : frames) times.push_back(static_cast<float>(frame.time - frames.front().time));
   const bool increasing = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
   if (!increasing) {

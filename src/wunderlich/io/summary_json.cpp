@@ -20,7 +20,8 @@ void require_finite(const Json& value, const std::string& key) {
     throw std::domain_error(fmt::format("summary.json: {} is not finite", key));
   }
   if (!value.is_structured()) return;
-  for (const auto& [name, item] : value.items()) require_finite(item, key.empty() ? name : key + "." + name);
+  for (const auto& [name, item] : value.items())
+    require_finite(item, key.empty() ? name : fmt::format("{}.{}", key, name));
 }
 
 Json vector_json(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
