@@ -4,7 +4,6 @@
 
 namespace wunderlich::solver::two_stage {
 
-using energy::Ends;
 using energy::EndsMatrix;
 using geometry::Hinge;
 using geometry::Ribbon;
@@ -13,12 +12,15 @@ namespace {
 
 constexpr int kRows = 6;  // a block: eta, theta (3), multipliers (2)
 constexpr int kMultiplier = 4;
-constexpr int kLocal = 14;  // theta of the two segments at either end's hinge, then eta of both ends
 
-/// Rows of the system that a link's ends depend on, -1 where held or absent, and the ends' derivatives in them.
-struct Local {
-  std::array<int, kLocal> row;
-  Eigen::Matrix<double, 6, kLocal> slope = Eigen::Matrix<double, 6, kLocal>::Zero();
+using Jet2 = Eigen::Matrix<double, 2, 6>;
+
+/// One end of a link: rows of what it depends on, -1 where held or absent, and d(kappa, tau)/d(theta before, after).
+struct LinkEnd {
+  std::array<int, 2> theta{-1, -1};
+  int eta = -1;
+  double eta_sign = 1;
+  Jet2 slope = Jet2::Zero();
 };
 
 int theta_row(const Ribbon& ribbon, const Workspace& work, int segment) {
@@ -30,39 +32,56 @@ int eta_row(const Ribbon& ribbon, const Workspace& work, int node) {
   return work.holding.eta_held[static_cast<std::size_t>(node)] ? -1 : block_row(ribbon, node);
 }
 
-Local local_at(const Ribbon& ribbon, const Workspace& work, std::size_t segment) {
-  Local local;
-  local.row.fill(-1);
-  for (int side : {0, 1}) {
-    const NodeView& view = work.views[segment + static_cast<std::size_t>(side)];
-    local.row[static_cast<std::size_t>(12 + side)] = eta_row(ribbon, work, view.eta);
-    local.slope(3 * side + 2, 12 + side) = view.eta_sign;
-    if (view.hinge < 0) continue;
-    const auto h = static_cast<std::size_t>(view.hinge);
-    const int rows[2] = {theta_row(ribbon, work, work.hinges[h].before), theta_row(ribbon, work, work.hinges[h].after)};
-    for (int part : {0, 1}) {
-      const int at = 6 * side + 3 * part;
-      const Mat3& jet = part == 0 ? work.jet[h].before : work.jet[h].after;
-      local.slope.block<1, 3>(3 * side, at) = view.sign * jet.row(1);
-      local.slope.block<1, 3>(3 * side + 1, at) = jet.row(2);
-      for (int k = 0; k < 3; ++k) {
-        local.row[static_cast<std::size_t>(at + k)] = rows[part] < 0 ? -1 : rows[part] + k;
-      }
-    }
-  }
-  return local;
+LinkEnd link_end(const Ribbon& ribbon, const Workspace& work, std::size_t node) {
+  const NodeView& view = work.views[node];
+  LinkEnd end;
+  end.eta = eta_row(ribbon, work, view.eta);
+  end.eta_sign = view.eta_sign;
+  if (view.hinge < 0) return end;
+  const auto h = static_cast<std::size_t>(view.hinge);
+  end.theta = {theta_row(ribbon, work, work.hinges[h].before), theta_row(ribbon, work, work.hinges[h].after)};
+  const geometry::HingeJet& jet = work.jet[h];
+  end.slope << view.sign * jet.before.row(1), view.sign * jet.after.row(1), jet.before.row(2), jet.after.row(2);
+  return end;
 }
 
-/// Adds a symmetric local matrix. Local unknowns may coincide, their entries add up.
-void scatter(const Local& local, const Eigen::Matrix<double, kLocal, kLocal>& matrix, math::BandedMatrix& out) {
-  for (int i = 0; i < kLocal; ++i) {
-    const int row = local.row[static_cast<std::size_t>(i)];
+/// Adds to the Hessian a^T curvature b of the angles at two ends; all of it where the ends are the same, else one
+/// triangle, whose mirror image is implied. Unknowns may coincide: a segment between the ends is seen by both.
+void scatter_angles(const LinkEnd& a, const LinkEnd& b, const Mat2& curvature, bool same, math::BandedMatrix& out) {
+  const Eigen::Matrix<double, 6, 6> block = a.slope.transpose().lazyProduct((curvature * b.slope).eval());
+  for (int i = 0; i < 6; ++i) {
+    const int row = a.theta[static_cast<std::size_t>(i / 3)];
     if (row < 0) continue;
-    for (int j = 0; j < kLocal; ++j) {
-      const int column = local.row[static_cast<std::size_t>(j)];
-      if (column >= 0 && column <= row) out.at(row, column) += matrix(i, j);
+    for (int j = 0; j < (same ? i + 1 : 6); ++j) {
+      const int column = b.theta[static_cast<std::size_t>(j / 3)];
+      if (column < 0) continue;
+      const bool diagonal = !same && row + i % 3 == column + j % 3;
+      out.at(row + i % 3, column + j % 3) += diagonal ? 2 * block(i, j) : block(i, j);
     }
   }
+}
+
+/// The same between the angles at one end and eta of one.
+void scatter_mixed(const LinkEnd& angles, const LinkEnd& eta, const Vec2& curvature, math::BandedMatrix& out) {
+  if (eta.eta < 0) return;
+  const Eigen::Matrix<double, 6, 1> column = eta.eta_sign * (angles.slope.transpose() * curvature);
+  for (int i = 0; i < 6; ++i) {
+    const int row = angles.theta[static_cast<std::size_t>(i / 3)];
+    if (row >= 0) out.at(row + i % 3, eta.eta) += column[i];
+  }
+}
+
+void scatter_link(const LinkEnd& a, const LinkEnd& b, const EndsMatrix& hessian, math::BandedMatrix& out) {
+  scatter_angles(a, a, hessian.block<2, 2>(0, 0), true, out);
+  scatter_angles(b, b, hessian.block<2, 2>(3, 3), true, out);
+  scatter_angles(a, b, hessian.block<2, 2>(0, 3), false, out);
+  scatter_mixed(a, a, hessian.block<2, 1>(0, 2), out);
+  scatter_mixed(a, b, hessian.block<2, 1>(0, 5), out);
+  scatter_mixed(b, a, hessian.block<2, 1>(3, 2), out);
+  scatter_mixed(b, b, hessian.block<2, 1>(3, 5), out);
+  if (a.eta >= 0) out.at(a.eta, a.eta) += hessian(2, 2);
+  if (b.eta >= 0) out.at(b.eta, b.eta) += hessian(5, 5);
+  if (a.eta >= 0 && b.eta >= 0) out.at(b.eta, a.eta) += a.eta_sign * b.eta_sign * hessian(2, 5);
 }
 
 void scatter_block(int row, int column, const Mat3& block, math::BandedMatrix& out) {
@@ -77,21 +96,19 @@ void scatter_block(int row, int column, const Mat3& block, math::BandedMatrix& o
 /// Energy of one link and its barrier: curvature in the strains, and slopes by hinge for the rest.
 void add_link(const Ribbon& ribbon, const Options& options, const geometry::State& shape, std::size_t s,
               Workspace& work) {
-  const Ends ends = link_ends(shape, work, s);
-  energy::LinkTerms terms = energy::link_terms(ribbon, options.model, s, ends);
+  const energy::LinkTerms& terms = work.links[s];
+  EndsMatrix hessian = terms.hessian;
   if (options.opt.barrier > 0) {
     const double slope = 0.5 * ribbon.width / ribbon.rest_length[s];
     const double scale = options.opt.barrier * ribbon.bending_stiffness * ribbon.rest_length[s] / ribbon.width;
     const double second =
-        scale * slope * slope * energy::ruling_barrier(slope * (ends[energy::kEtaB] - ends[energy::kEtaA])).second;
-    terms.hessian(2, 2) += second;
-    terms.hessian(5, 5) += second;
-    terms.hessian(2, 5) -= second;
-    terms.hessian(5, 2) -= second;
+        scale * slope * slope * energy::ruling_barrier(slope * (shape.eta[s + 1] - shape.eta[s])).second;
+    hessian(2, 2) += second;
+    hessian(5, 5) += second;
+    hessian(2, 5) -= second;
+    hessian(5, 2) -= second;
   }
-  const Local local = local_at(ribbon, work, s);
-  const Eigen::Matrix<double, 6, kLocal> half = terms.hessian * local.slope;
-  scatter(local, local.slope.transpose().lazyProduct(half), work.system);
+  scatter_link(link_end(ribbon, work, s), link_end(ribbon, work, s + 1), hessian, work.system);
   for (int side : {0, 1}) {
     const NodeView& view = work.views[s + static_cast<std::size_t>(side)];
     if (view.hinge < 0) continue;

@@ -2,6 +2,8 @@
 /// constraints. Six rows a node, eta, theta, then the multipliers of the node's hinge after what they hold.
 #pragma once
 
+#include <array>
+
 #include "wunderlich/solver/two_stage/objective.hpp"
 
 namespace wunderlich::solver::two_stage {
@@ -15,8 +17,8 @@ enum class Curvature {
 /// Row of a block in the banded system; loops are folded.
 int block_row(const geometry::Ribbon& ribbon, int block);
 
-/// Assembles work.system at the refreshed jets. `shift` is added to the diagonal of the unknowns, in units of
-/// D w/l on theta and D l/w on eta.
+/// Assembles work.system at the jets and link terms of the last objective_gradient. `shift` is added to the diagonal of
+/// the unknowns, in units of D w/l on theta and D l/w on eta.
 void assemble_kkt(const geometry::Ribbon& ribbon, const Options& options, const geometry::State& shape,
                   const std::vector<double>& multipliers, Curvature curvature, double shift, Workspace& work);
 

@@ -27,18 +27,10 @@ double norm(const std::vector<double>& v) {
   return std::sqrt(sum);
 }
 
-/// Gradient in (q, eta) at the refreshed jets; with the direct projection only its part along the constraints, so that
-/// where the iteration rests is a constrained minimum.
+/// Gradient in (q, eta) at a state; false if it is not finite.
 bool gradient_now(const Ribbon& ribbon, const Options& options, const geometry::State& shape, Workspace& work) {
   refresh_strains(ribbon, options.model, shape, true, work);
-  constraint_residual(ribbon, shape, work);
   objective_gradient(ribbon, options, shape, work);
-  if (options.opt.projection == Projection::direct) {
-    assemble_range(ribbon, shape, work);
-    work.range.active.assign(work.range.residual.size(), 0);
-    if (!factor_active(work.range.active, work.range, work.factored)) return false;
-    remove_normal_part(work.range, work.factored, work.gradient);
-  }
   to_quaternion_gradient(work.gradient);
   return std::isfinite(norm(work.gradient));
 }

@@ -32,7 +32,6 @@ void add_parallel(const Ribbon& ribbon, const geometry::State& shape, double wei
   const Vec3 edge = shape.q[s].conjugate() * Vec3((shape.r[s + 1] - shape.r[s]) / ribbon.rest_length[s]);
   const Vec3 e3 = Vec3::UnitZ();
   const Mat3 outer = edge * e3.transpose();
-  terms.value += weight * (edge - e3).squaredNorm();
   terms.gradient -= 2 * weight * e3.cross(edge);
   terms.hessian += weight * (2 * edge.z() * Mat3::Identity() - outer - outer.transpose());
 }
@@ -65,6 +64,7 @@ void set_up_views(const Ribbon& ribbon, Workspace& work) {
     work.views.back().eta = 0;
     work.views.back().eta_sign = ribbon.seam_sign();
   }
+  work.links.resize(nodes - 1);
   work.strain.resize(work.hinges.size());
   work.jet.resize(work.hinges.size());
 }
@@ -100,18 +100,27 @@ Ends link_ends(const geometry::State& shape, const Workspace& work, std::size_t 
 
 energy::TurnTerms frame_terms(const Ribbon& ribbon, const geometry::State& shape, const Workspace& work,
                               std::size_t segment) {
-  energy::TurnTerms terms{0, Vec3::Zero(), Mat3::Zero()};
+  energy::TurnTerms terms{Vec3::Zero(), Mat3::Zero()};
   if (work.inertia[segment] > 0) {
     terms = energy::torsional_inertia(work.inertia[segment], work.carried[segment], shape.q[segment]);
   }
   add_parallel(ribbon, shape, work.parallel_weight, segment, terms);
-  const Vec3& torque = work.torque[segment];
-  if (!torque.isZero(0)) {
-    const Quat& from = work.torque_frame[segment];
-    terms.value -= torque.dot(from * math::log_map(from.conjugate() * shape.q[segment]));
-    terms.gradient -= shape.q[segment].conjugate() * torque;
-  }
+  terms.gradient -= shape.q[segment].conjugate() * work.torque[segment];
   return terms;
+}
+
+double frame_value(const Ribbon& ribbon, const geometry::State& shape, const Workspace& work, std::size_t segment) {
+  const Vec3 edge = (shape.r[segment + 1] - shape.r[segment]) / ribbon.rest_length[segment];
+  double sum = work.parallel_weight * (edge - shape.q[segment] * Vec3::UnitZ()).squaredNorm();
+  if (work.inertia[segment] > 0) {
+    const double turn = energy::turn_between(work.carried[segment], shape.q[segment]);
+    sum += work.inertia[segment] * turn * turn;
+  }
+  if (!work.torque[segment].isZero(0)) {
+    const Quat& from = work.torque_frame[segment];
+    sum -= work.torque[segment].dot(from * math::log_map(from.conjugate() * shape.q[segment]));
+  }
+  return sum;
 }
 
 double objective_value(const Ribbon& ribbon, const Options& options, const geometry::State& shape,
@@ -124,7 +133,7 @@ double objective_value(const Ribbon& ribbon, const Options& options, const geome
     if (options.opt.barrier > 0) {
       sum += barrier_scale(ribbon, options.opt, s) * energy::ruling_barrier(ruling_ratio(ribbon, shape, s)).value;
     }
-    sum += frame_terms(ribbon, shape, work, s).value;
+    sum += frame_value(ribbon, shape, work, s);
   }
   return sum;
 }
@@ -135,7 +144,8 @@ void objective_gradient(const Ribbon& ribbon, const Options& options, const geom
   for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) {
     Ends slope = Ends::Zero();
     if (!options.opt.central_rate) {
-      slope = energy::link_terms(ribbon, options.model, s, link_ends(shape, work, s)).gradient;
+      work.links[s] = energy::link_terms(ribbon, options.model, s, link_ends(shape, work, s));
+      slope = work.links[s].gradient;
     }
     if (options.opt.barrier > 0) {
       const double rate = barrier_scale(ribbon, options.opt, s) * 0.5 * ribbon.width / ribbon.rest_length[s] *

@@ -46,7 +46,9 @@ void clear_held(const geometry::Ribbon& ribbon, const Workspace& work, std::vect
 /// gamma h and (kappa eta - tau) h by hinge [rad], into work.residual; returns the largest.   @eq Shen2015:22
 double constraint_residual(const geometry::Ribbon& ribbon, const geometry::State& shape, Workspace& work);
 
-/// Terms of one segment's frame alone: E_para, E_I and torque.
+/// What depends on one segment's frame alone: E_para, E_I and torque [J], and its derivatives in theta.
+double frame_value(const geometry::Ribbon& ribbon, const geometry::State& shape, const Workspace& work,
+                   std::size_t segment);
 energy::TurnTerms frame_terms(const geometry::Ribbon& ribbon, const geometry::State& shape, const Workspace& work,
                               std::size_t segment);
 

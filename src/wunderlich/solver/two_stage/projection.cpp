@@ -112,26 +112,6 @@ bool factor_active(const std::vector<char>& active, const RangeSpace& space, mat
   return math::factor(factored).sound;
 }
 
-void remove_normal_part(RangeSpace& space, math::BandedMatrix& factored, std::vector<double>& gradient) {
-  // g - J^T (J M^-1 J^T)^-1 J M^-1 g: the covector whose step M^-1 g keeps the constraints to first order.
-  space.multipliers.assign(space.residual.size(), 0.0);
-  for (std::size_t u = 0; u < space.columns.size(); ++u) {
-    const ColumnEntries& column = space.columns[u];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(column.count); ++i) {
-      const int row = column.entry[i].row;
-      if (row % kBlockRows == 2) continue;
-      space.multipliers[static_cast<std::size_t>(row)] += column.entry[i].slope * inverse_metric(u) * gradient[u];
-    }
-  }
-  math::solve(factored, space.multipliers);
-  for (std::size_t u = 0; u < space.columns.size(); ++u) {
-    const ColumnEntries& column = space.columns[u];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(column.count); ++i) {
-      gradient[u] -= column.entry[i].slope * space.multipliers[static_cast<std::size_t>(column.entry[i].row)];
-    }
-  }
-}
-
 namespace {
 
 /// Multipliers of the active set's equations. A bound joins the set when violated and leaves when it pulls.

@@ -44,7 +44,4 @@ void push_back(const std::vector<double>& multipliers, const RangeSpace& space, 
 /// Factors the matrix of the equations and the active bounds; other rows stand alone.
 bool factor_active(const std::vector<char>& active, const RangeSpace& space, math::BandedMatrix& factored);
 
-/// Takes from a gradient what the equations would undo, with the matrix factored without bounds.
-void remove_normal_part(RangeSpace& space, math::BandedMatrix& factored, std::vector<double>& gradient);
-
 }  // namespace wunderlich::solver::two_stage

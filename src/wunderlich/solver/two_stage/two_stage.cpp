@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "wunderlich/constraint/errors.hpp"
 #include "wunderlich/energy/parallel_coupling.hpp"
 #include "wunderlich/energy/torsional_inertia.hpp"
 #include "wunderlich/solver/two_stage/objective.hpp"
@@ -18,7 +17,6 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSmallestLoop = 5;       // segments: links reach over four
 constexpr double kMostSubsteps = 1e5;  // beyond this a step is a mistake in the units
 
@@ -95,14 +93,31 @@ bool edges_follow_frames(const Ribbon& ribbon, const geometry::State& shape) {
   return true;
 }
 
+/// The figures of constraint/errors.hpp without its allocations.
+ConstraintErrors errors_now(const Ribbon& ribbon, const energy::Model& model, const geometry::State& shape,
+                            Workspace& work) {
+  ConstraintErrors out;
+  for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) {
+    const Vec3 edge = shape.r[s + 1] - shape.r[s];
+    const double length = edge.norm();
+    out.max_length_error = std::max(out.max_length_error, std::abs(length / ribbon.rest_length[s] - 1));
+    out.max_parallel_error = std::max(out.max_parallel_error, (edge / length - shape.q[s] * Vec3::UnitZ()).norm());
+  }
+  refresh_strains(ribbon, model, shape, false, work);
+  constraint_residual(ribbon, shape, work);
+  for (std::size_t i = 0; i < work.residual.size(); i += 2) {
+    out.max_binormal = std::max(out.max_binormal, std::abs(work.residual[i]));
+    out.max_torsion_mismatch = std::max(out.max_torsion_mismatch, std::abs(work.residual[i + 1]));
+  }
+  out.max_ruling_ratio = largest_ruling_ratio(ribbon, shape);
+  return out;
+}
+
 /// Turn about the tangent since the step's start, as a rate.
 void record_spin(const Options& options, double dt, const Workspace& work, State& state) {
   if (options.inertia == TorsionalInertia::off) return;
   for (std::size_t s = 0; s < state.spin.size(); ++s) {
-    const Quat p = work.carried[s].conjugate() * state.shape.q[s];
-    double angle = 2 * std::atan2(p.z(), p.w());
-    if (angle > kPi) angle -= 2 * kPi;
-    if (angle < -kPi) angle += 2 * kPi;
+    const double angle = energy::turn_between(work.carried[s], state.shape.q[s]);
     state.spin[s] = work.holding.frame_held[s] ? 0 : state.spin[s] + angle / dt;
   }
 }
@@ -154,6 +169,7 @@ Options printed_options() {
   options.opt.central_rate = true;
   options.opt.step_size = 0.05;
   options.opt.max_iterations = 30;
+  options.inertia = TorsionalInertia::off;
   options.substeps = false;
   return options;
 }
@@ -212,7 +228,7 @@ StepReport step(const Ribbon& ribbon, const Drive& drive, const Options& options
   }
   watch.last = Clock::now();
   report.converged = converged;
-  report.constraints = constraint::errors(ribbon, work.trial.shape);
+  report.constraints = errors_now(ribbon, options.model, work.trial.shape, work);
   report.accepted = true;
   state = work.trial;
   watch.add_to(report.other_seconds);

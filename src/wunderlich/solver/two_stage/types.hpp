@@ -76,7 +76,7 @@ struct Options {
   energy::Model model;
   OdeOptions ode;
   OptOptions opt;
-  TorsionalInertia inertia = TorsionalInertia::off;
+  TorsionalInertia inertia = TorsionalInertia::physical;
   double inertia_scale = 1;   ///< Gamma, in [0, 1]
   bool substeps = true;       ///< divide a step that exceeds the stability bound
   double bound_safety = 0.9;  ///< share of the bound that a substep may take

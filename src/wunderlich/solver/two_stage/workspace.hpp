@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "wunderlich/energy/link_terms.hpp"
 #include "wunderlich/geometry/chart.hpp"
 #include "wunderlich/geometry/state.hpp"
 #include "wunderlich/math/banded.hpp"
@@ -46,9 +47,10 @@ struct Workspace {
   std::vector<double> length_rhs;
 
   // stage opt
-  std::vector<Vec3> strain;             ///< (hinges) gamma, kappa, tau [1/m]
-  std::vector<geometry::HingeJet> jet;  ///< (hinges)
-  std::vector<Vec3> hinge_slope;        ///< (hinges) dV/dstrain
+  std::vector<Vec3> strain;              ///< (hinges) gamma, kappa, tau [1/m]
+  std::vector<geometry::HingeJet> jet;   ///< (hinges)
+  std::vector<energy::LinkTerms> links;  ///< (segments) energies at the last gradient
+  std::vector<Vec3> hinge_slope;         ///< (hinges) dV/dstrain
   std::vector<double> kkt_rhs;
   math::BandedMatrix system, factored;
   std::vector<double> gradient, previous_gradient, step, previous_step;
