@@ -1,6 +1,7 @@
 /// The commands of the program. Each returns the exit code; bad input is an InputError, which `main` reports.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ struct RunArguments {
   std::string scene;
   std::string out;  ///< empty: out/<scene>
   std::vector<std::string> set;
-  std::string formats;  ///< empty: those of the scene
+  std::optional<std::string> formats;  ///< none: those of the scene
   bool resume = false;
   bool quiet = false;
 };

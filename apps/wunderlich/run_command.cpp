@@ -29,7 +29,11 @@ std::filesystem::path default_folder(const std::string& scene_name) {
 }
 
 /// Overrides may be repeated on resuming, but a different scene would not be the run that was interrupted.
-void require_same_scene(const StoredRun& stored, const std::vector<std::string>& set) {
+void require_same_scene(const StoredRun& stored, const std::string& name, const std::vector<std::string>& set) {
+  if (scene::read_scene(name).written != stored.scene.written) {
+    throw InputError(
+        fmt::format("{}: has changed since the run that --resume goes on with; start anew without --resume", name));
+  }
   for (const std::string& assignment : set) {
     if (scene::read_scene_text(stored.scene.resolved, "checkpoint", {assignment}).resolved == stored.scene.resolved)
       continue;
@@ -48,12 +52,12 @@ Start resumed_start(const RunArguments& arguments, const std::filesystem::path& 
     throw InputError(
         fmt::format("{}: is a run of the scene `{}`, not of `{}`", folder.string(), stored.scene.name, name));
   }
-  require_same_scene(stored, arguments.set);
+  require_same_scene(stored, arguments.scene, arguments.set);
   return {std::move(stored.scene), std::move(stored.progress), stored.outcome, true};
 }
 
 std::vector<io::Format> formats_of(const RunArguments& arguments, const scene::Scene& scene) {
-  if (!arguments.formats.empty()) return io::parse_formats(arguments.formats);
+  if (arguments.formats) return io::parse_formats(*arguments.formats);
   std::vector<io::Format> formats;
   for (const std::string& word : scene.output.formats) formats.push_back(io::parse_format(word));
   return formats;
@@ -107,8 +111,8 @@ int run_command(const RunArguments& arguments) {
       arguments.out.empty() ? default_folder(arguments.scene) : std::filesystem::path(arguments.out);
   const Start start =
       arguments.resume ? resumed_start(arguments, folder) : Start{scene::read_scene(arguments.scene, arguments.set)};
-  if (start.outcome != scene::Outcome::interrupted) return report_finished(start, folder, arguments.quiet);
   const std::vector<io::Format> formats = formats_of(arguments, start.scene);
+  if (start.outcome != scene::Outcome::interrupted) return report_finished(start, folder, arguments.quiet);
   io::require_writable(folder);
 
   catch_interrupts();

@@ -113,6 +113,7 @@ io::Checkpoint to_checkpoint(const StoredRun& run) {
   io::Checkpoint checkpoint;
   checkpoint.texts["name"] = run.scene.name;
   checkpoint.texts["scene"] = run.scene.resolved;
+  checkpoint.texts["written"] = run.scene.written;
   checkpoint.texts["outcome"] = outcome_names[static_cast<std::size_t>(run.outcome)];
   checkpoint.arrays["records"] = packed(run.progress.records);
   checkpoint.arrays["cursor"] = run.progress.cursor;
@@ -123,6 +124,7 @@ StoredRun from_checkpoint(const io::Checkpoint& checkpoint, const std::string& o
   StoredRun run;
   run.scene = scene::read_scene_text(text_of(checkpoint, "scene", origin), origin);
   run.scene.name = text_of(checkpoint, "name", origin);
+  run.scene.written = text_of(checkpoint, "written", origin);
   const std::string outcome = text_of(checkpoint, "outcome", origin);
   for (std::size_t i = 0; i < outcome_names.size(); ++i) {
     if (outcome == outcome_names[i]) run.outcome = static_cast<scene::Outcome>(i);

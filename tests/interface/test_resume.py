@@ -49,11 +49,19 @@ class Resume(ProgramTest):
         self.expect_refused("run", "moebius", "--out", "run", "--resume", "--set", "ribbon.segments=40", says="ribbon.segments=40")
         self.expect_refused("run", "ring", "--out", "run", "--resume", says=["moebius", "ring"])
 
+    def test_resuming_an_edited_scene_is_refused(self):
+        self.expect(0, "run", "strip.yaml", "--out", "run", "--formats", "none")
+        scene = self.folder / "strip.yaml"
+        scene.write_text(scene.read_text().replace("segments: 12", "segments: 13"))
+        self.expect_refused("run", "strip.yaml", "--out", "run", "--resume", says=["strip.yaml", "changed"])
+
     def test_resuming_a_finished_run_changes_nothing(self):
         self.expect(0, "run", "strip.yaml", "--out", "run", "--formats", "none")
         before = self.tree()
         self.assertIn("nothing to resume", self.expect(0, "run", "strip.yaml", "--out", "run", "--resume").stderr)
         self.assertEqual(self.tree(), before)
+        for formats in ("nonsense", ""):
+            self.expect_refused("run", "strip.yaml", "--out", "run", "--resume", "--formats", formats, says="vtp")
 
     def test_resuming_without_a_run(self):
         self.expect_refused("run", "strip.yaml", "--resume", says="out/strip")

@@ -41,7 +41,7 @@ TEST_F(RunFolderTest, HoldsTheAgreedFiles) {
 
 TEST_F(RunFolderTest, ReplacesARunWhole) {
   const fs::path folder = root / "coil";
-  write_run_folder(folder, sample_run(), default_formats());
+  write_run_folder(folder, sample_run(), parse_formats("vtp,glb,svg,html"));
   std::ofstream(folder / "stale") << "x";
   write_run_folder(fs::path(folder.string() + "/"), sample_run(), {});
   EXPECT_EQ(listing(folder), (std::set<std::string>{"summary.json", "centerline.csv", "history.csv", "checkpoint"}));

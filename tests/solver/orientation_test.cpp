@@ -39,7 +39,7 @@ TEST(OrientationAtAnEnd, ConvergesToSecondOrder) {
 TEST(OrientationAtAnEnd, LeavesTheTangentFree) {
   const PathEnd end = turned(40, 1.0);
   const Vec3 tangent = end.shape.q.back() * Vec3::UnitZ();
-  EXPECT_LT(tangent.x(), 0.95);  // a full clamp would keep it along x
+  EXPECT_LT(tangent.x(), 0.95);                                                    // a full clamp would keep it along x
   EXPECT_LT(std::abs(geometry::strains(end.ribbon(), end.shape).kappa[39]), 0.2);  // no moment bends the end
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "wunderlich/base/types.hpp"
@@ -41,6 +42,7 @@ struct Support {
   std::array<bool, 3> hold_position{true, true, true};  ///< world x, y, z
   Orientation orientation = Orientation::full;
   Motion motion;
+  double release = std::numeric_limits<double>::infinity();  ///< when it lets go [s]; dynamics only
 };
 
 /// Whether a load keeps its direction in space or turns with the material frame it acts on.

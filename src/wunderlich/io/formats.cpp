@@ -50,6 +50,4 @@ std::vector<Format> parse_formats(std::string_view list) {
   }
 }
 
-std::vector<Format> default_formats() { return {Format::vtp, Format::glb, Format::svg, Format::html}; }
-
 }  // namespace wunderlich::io

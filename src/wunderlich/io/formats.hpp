@@ -25,7 +25,4 @@ Format parse_format(std::string_view text);
 /// Comma-separated names in any order, or `none`. Throws InputError.
 std::vector<Format> parse_formats(std::string_view list);
 
-/// What a run writes without `--formats`.
-std::vector<Format> default_formats();
-
 }  // namespace wunderlich::io

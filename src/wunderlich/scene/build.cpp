@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 namespace wunderlich::scene {
 
@@ -79,11 +78,6 @@ std::vector<double> spacing_of(const Cell& ribbon, int segments) {
   return spacing;
 }
 
-template <typename T>
-T chosen(const Cell& cell, const std::map<std::string, T>& meanings) {
-  return meanings.at(text(cell));
-}
-
 }  // namespace
 
 geometry::RibbonSpec build_ribbon(const Cell& root) {
@@ -108,36 +102,6 @@ geometry::RibbonSpec build_ribbon(const Cell& root) {
   if (loop && ribbon.free_rulings) fail(child(cell, "free_rulings"), "a loop has no ends; leave it out");
   if (loop && ribbon.segments < 3) fail(child(cell, "segments"), "a loop needs at least 3");
   return ribbon;
-}
-
-SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key) {
-  const Cell cell = child(root, "solver");
-  SolverOptions options;
-  options.method = chosen<Method>(child(cell, "method"), {{"equilibrium", Method::equilibrium}});
-  options.energy.elastic = chosen<energy::Elastic>(child(cell, "energy"), {{"wunderlich", energy::Elastic::wunderlich},
-                                                                           {"truncated", energy::Elastic::truncated},
-                                                                           {"sadowsky", energy::Elastic::sadowsky}});
-  const Cell order = child(cell, "taylor_order");
-  if (order.value != nullptr && options.energy.elastic != energy::Elastic::truncated) {
-    fail(order, "has no effect without `energy: truncated`");
-  }
-  options.energy.taylor_order = static_cast<int>(integer(order));
-  options.energy.strain = chosen<energy::StrainMeasure>(
-      child(cell, "strain"),
-      {{"logarithm", energy::StrainMeasure::logarithm}, {"printed", energy::StrainMeasure::printed}});
-  options.loop_path =
-      chosen<LoopPath>(child(cell, "path"),
-                       {{"automatic", LoopPath::automatic}, {"twist", LoopPath::twist}, {"planar", LoopPath::planar}});
-  if (options.loop_path == LoopPath::planar && std::abs(ribbon.half_twists) != 2) {
-    fail(child(cell, "path"), "leads to a loop with two half twists only; set `ribbon.half_twists: 2`");
-  }
-  const Cell duration = child(cell, "duration");
-  options.duration = duration.value != nullptr ? number(duration) : last_key > 0 ? last_key : 1;
-  options.steps = static_cast<int>(integer(child(cell, "steps")));
-  options.tolerance = number(child(cell, "tolerance"));
-  options.max_iterations = static_cast<int>(integer(child(cell, "max_iterations")));
-  options.barrier = number(child(cell, "barrier"));
-  return options;
 }
 
 OutputOptions build_output(const Cell& root, const geometry::RibbonSpec& ribbon) {

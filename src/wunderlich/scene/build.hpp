@@ -1,6 +1,8 @@
 /// From a checked tree to a scene: what the table of keys alone cannot say is checked here.
 #pragma once
 
+#include <map>
+
 #include "wunderlich/scene/scene.hpp"
 #include "wunderlich/scene/schema.hpp"
 
@@ -16,8 +18,21 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
 /// Solver options; `last_key` is the time of the last keyframe, 0 without any.
 SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key);
 
+Method method_of(const Cell& root);
+
+/// Where a motion starts; nothing for equilibria, which start undeformed.
+InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon);
+
 /// Output options; throws InputError when they ask for more data than is sensible for this strip.
 OutputOptions build_output(const Cell& root, const geometry::RibbonSpec& ribbon);
+
+Vec3 vector(const Cell& cell);
+
+/// What the chosen word means.
+template <typename T>
+T chosen(const Cell& cell, const std::map<std::string, T>& meanings) {
+  return meanings.at(text(cell));
+}
 
 /// A support with the place it was written at, for messages.
 struct PlacedSupport {

@@ -23,11 +23,6 @@ struct Strip {
   int last_node() const { return loop() ? spec.segments - 1 : spec.segments; }
 };
 
-Vec3 vector(const Cell& cell) {
-  const std::vector<double> v = numbers(cell);
-  return {v[0], v[1], v[2]};
-}
-
 [[noreturn]] void fail_index(const Cell& cell, long value, int last) {
   fail(cell, fmt::format("{} is not on the strip; must be a whole number from 0 to {}", value, last));
 }
@@ -231,6 +226,11 @@ constraint::Load load_of(const Cell& cell, const Strip& strip) {
 
 }  // namespace
 
+Vec3 vector(const Cell& cell) {
+  const std::vector<double> v = numbers(cell);
+  return {v[0], v[1], v[2]};
+}
+
 constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSpec& ribbon) {
   const Strip strip{ribbon, geometry::make_ribbon(ribbon).node_u};
   constraint::Surroundings surroundings;
@@ -241,7 +241,12 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
   const Cell pins = child(root, "pins");
   for (std::size_t i = 0; i < count(pins); ++i) placed.push_back(pin_of(element(pins, i), strip));
   check_supports(ribbon, placed);
-  for (const PlacedSupport& p : placed) {
+  const bool moves = method_of(root) != Method::equilibrium;
+  for (PlacedSupport& p : placed) {
+    if (const Cell release = child(p.cell, "release"); release.value != nullptr) {
+      if (!moves) fail(release, "has no effect with `method: equilibrium`");
+      p.support.release = number(release);
+    }
     if (p.end && p.support.orientation == Orientation::full) ribbon.clamped[p.support.node == 0 ? 0 : 1] = true;
     surroundings.supports.push_back(p.support);
   }
@@ -254,11 +259,11 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
     const bool at_end = load.node == 0 || load.node == ribbon.segments;
     if (turns && at_end && ribbon.closure == geometry::Closure::open) ribbon.clamped[load.node == 0 ? 0 : 1] = true;
   }
-  const bool floating = surroundings.supports.empty() && !surroundings.gravity.isZero(0);
-  if (surroundings.supports.empty() && !surroundings.loads.empty()) {
-    fail(child(root, "forces"), "nothing holds the strip against them; add a clamp or a pin");
+  if (surroundings.supports.empty() && !moves) {
+    const std::string problem = "nothing holds the strip against it; add a clamp or a pin";
+    if (!surroundings.loads.empty()) fail(child(root, "forces"), problem);
+    if (!surroundings.gravity.isZero(0)) fail(child(root, "gravity"), problem);
   }
-  if (floating) fail(child(root, "gravity"), "nothing holds the strip against it; add a clamp or a pin");
   return surroundings;
 }
 

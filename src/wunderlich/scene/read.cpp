@@ -69,17 +69,19 @@ double last_key_time(const constraint::Surroundings& surroundings) {
 
 Scene read_scene_text(const std::string& text, const std::string& source, const std::vector<std::string>& overrides) {
   Value document = parse_document(text, shown(source, longest_path));
+  Scene scene;
+  scene.written = to_yaml(document);
   if (!overrides.empty() && document.kind == Value::Kind::map) {
     for (const std::string& assignment : overrides) apply_override(document, assignment);
   }
   check_document(document);
   const Cell root = root_cell(document);
-  Scene scene;
   scene.name = std::filesystem::path(source).stem().string();
   const Cell title = child(root, "title");
   scene.title = title.value == nullptr ? scene.name : title.value->text;
   scene.ribbon = build_ribbon(root);
   scene.surroundings = build_surroundings(root, scene.ribbon);
+  scene.initial = build_initial(root, scene.ribbon);
   scene.solver = build_solver(root, scene.ribbon, last_key_time(scene.surroundings));
   scene.output = build_output(root, scene.ribbon);
   scene.resolved = to_yaml(document);

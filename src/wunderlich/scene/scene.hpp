@@ -9,10 +9,14 @@
 #include "wunderlich/energy/model.hpp"
 #include "wunderlich/geometry/ribbon.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
+#include "wunderlich/solver/two_stage/types.hpp"
 
 namespace wunderlich::scene {
 
-enum class Method { equilibrium };
+enum class Method { equilibrium, two_stage };
+
+/// "equilibrium", "two-stage": as scenes and summaries say it.
+const char* method_name(Method method);
 
 using solver::LoopPath;
 
@@ -25,6 +29,25 @@ struct SolverOptions {
   double tolerance = 1e-10;   ///< on the Newton step: rotation [rad] and displacement / length
   int max_iterations = 2000;  ///< Newton iterations of one minimisation
   double barrier = 1e-9;      ///< e1 of the final ruling barrier, see solver::ChainProblem
+  double time_step = 0.01;    ///< dynamics [s]
+  bool stop_at_rest = false;  ///< dynamics: end before `duration` once nothing moves
+  solver::two_stage::Options two_stage;
+};
+
+enum class InitialShape {
+  straight,     ///< undeformed
+  coil,         ///< constant curvature and ruling slope
+  closed,       ///< a loop where its path has just closed it
+  equilibrium,  ///< at rest under the supports and loads of time 0
+};
+
+/// Where a motion starts.
+struct InitialState {
+  InitialShape shape = InitialShape::straight;
+  double radius = 1;             ///< of a coil [m]
+  double slope = 0;              ///< eta of a coil
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+  Vec3 spin = Vec3::Zero();      ///< about the center of mass [rad/s]
 };
 
 struct OutputOptions {
@@ -37,9 +60,11 @@ struct OutputOptions {
 struct Scene {
   std::string name;
   std::string title;     ///< one line, for `wunderlich scenes`
-  std::string resolved;  ///< the scene as YAML after all overrides: what `--resume` runs again
+  std::string written;   ///< the scene as YAML before overrides
+  std::string resolved;  ///< the same after all overrides: what `--resume` runs again
   geometry::RibbonSpec ribbon;
   constraint::Surroundings surroundings;
+  InitialState initial;
   SolverOptions solver;
   OutputOptions output;
 };

@@ -241,7 +241,8 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
     reactions.torque[0] = work.sweep.base_gradient.tail<3>();
   }
   // After the probes of the loads, the rows of each hold in turn.
-  auto row = work.system.rows.begin() + static_cast<std::ptrdiff_t>(work.system.probe_count() + (problem.closed ? 8 : 0));
+  auto row =
+      work.system.rows.begin() + static_cast<std::ptrdiff_t>(work.system.probe_count() + (problem.closed ? 8 : 0));
   for (const Hold& hold : problem.holds) {
     for (std::size_t k = 0; k < row_count(hold); ++k, ++row) {
       if (hold.end < 0) continue;

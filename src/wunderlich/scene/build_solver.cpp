@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "wunderlich/scene/build.hpp"
+#include "wunderlich/solver/two_stage/two_stage.hpp"
+
+namespace wunderlich::scene {
+
+namespace two_stage = solver::two_stage;
+
+namespace {
+
+/// Keys that only one method reads; given with another they are a mistake worth telling.
+void check_use(const Cell& solver, Method method) {
+  const std::map<Method, std::vector<std::string>> own{
+      {Method::equilibrium, {"steps", "tolerance", "max_iterations", "barrier"}},
+      {Method::two_stage,
+       {"time_step", "stop_at_rest", "form", "projection", "minimiser", "weight_scale", "step_size", "substeps",
+        "torsional_inertia", "inertia_form", "damping"}}};
+  for (const auto& [owner, names] : own) {
+    for (const std::string& name : names) {
+      const Cell cell = child(solver, name);
+      if (owner != method && cell.value != nullptr) {
+        fail(cell, fmt::format("has no effect with `method: {}`; it belongs to `{}`", method_name(method),
+                               method_name(owner)));
+      }
+    }
+  }
+}
+
+energy::Model model_of(const Cell& cell) {
+  energy::Model model;
+  model.elastic = chosen<energy::Elastic>(child(cell, "energy"), {{"wunderlich", energy::Elastic::wunderlich},
+                                                                  {"truncated", energy::Elastic::truncated},
+                                                                  {"sadowsky", energy::Elastic::sadowsky}});
+  const Cell order = child(cell, "taylor_order");
+  if (order.value != nullptr && model.elastic != energy::Elastic::truncated) {
+    fail(order, "has no effect without `energy: truncated`");
+  }
+  model.taylor_order = static_cast<int>(integer(order));
+  model.strain = chosen<energy::StrainMeasure>(child(cell, "strain"), {{"logarithm", energy::StrainMeasure::logarithm},
+                                                                       {"printed", energy::StrainMeasure::printed}});
+  return model;
+}
+
+LoopPath loop_path_of(const Cell& solver, const geometry::RibbonSpec& ribbon) {
+  const Cell cell = child(solver, "path");
+  const auto path = chosen<LoopPath>(
+      cell, {{"automatic", LoopPath::automatic}, {"twist", LoopPath::twist}, {"planar", LoopPath::planar}});
+  if (cell.value != nullptr && ribbon.closure != geometry::Closure::loop) {
+    fail(cell, "says how a loop is made; the strip is open");
+  }
+  if (path == LoopPath::planar && std::abs(ribbon.half_twists) != 2) {
+    fail(cell, "leads to a loop with two half twists only; set `ribbon.half_twists: 2`");
+  }
+  return path;
+}
+
+void read_damping(const Cell& damping, two_stage::OdeOptions& ode) {
+  const Cell tangent = child(damping, "tangent"), normal = child(damping, "normal");
+  const Cell factor_tangent = child(damping, "factor_tangent"), factor_normal = child(damping, "factor_normal");
+  const bool rates = tangent.value != nullptr || normal.value != nullptr;
+  const bool factors = factor_tangent.value != nullptr || factor_normal.value != nullptr;
+  if (rates && factors) fail(damping, "has rates and factors; give one of the two");
+  if (rates) ode.damping = two_stage::Damping::rate;
+  if (factors) ode.damping = two_stage::Damping::per_step;
+  if (rates) ode.damping_tangent = number(tangent), ode.damping_normal = number(normal);
+  if (factor_tangent.value != nullptr) ode.factor_tangent = number(factor_tangent);
+  if (factor_normal.value != nullptr) ode.factor_normal = number(factor_normal);
+}
+
+two_stage::Options two_stage_of(const Cell& cell, const energy::Model& model) {
+  const bool printed = text(child(cell, "form")) == "printed";
+  two_stage::Options options = printed ? two_stage::printed_options() : two_stage::Options{};
+  const auto given = [&](const char* name) { return child(cell, name).value != nullptr; };
+  const bool own_model = given("energy") || given("taylor_order") || given("strain");
+  if (!printed || own_model) options.model = model;
+  if (given("projection")) {
+    options.opt.projection = chosen<two_stage::Projection>(
+        child(cell, "projection"),
+        {{"direct", two_stage::Projection::direct}, {"gauss-seidel", two_stage::Projection::gauss_seidel}});
+    if (options.opt.projection == two_stage::Projection::gauss_seidel) {
+      options.opt.minimiser = two_stage::Minimiser::lbfgs;  // Newton's method has no projection of its own
+    }
+  }
+  if (given("minimiser")) {
+    options.opt.minimiser = chosen<two_stage::Minimiser>(
+        child(cell, "minimiser"), {{"newton", two_stage::Minimiser::newton}, {"lbfgs", two_stage::Minimiser::lbfgs}});
+  }
+  if (given("step_size")) options.opt.step_size = number(child(cell, "step_size"));
+  if (given("substeps")) options.substeps = boolean(child(cell, "substeps"));
+  if (given("weight_scale")) options.ode.weight_scale = number(child(cell, "weight_scale"));
+  options.inertia_scale = number(child(cell, "torsional_inertia"));
+  if (options.inertia_scale > 0) {
+    options.inertia = chosen<two_stage::TorsionalInertia>(
+        child(cell, "inertia_form"),
+        {{"physical", two_stage::TorsionalInertia::physical}, {"printed", two_stage::TorsionalInertia::printed}});
+  }
+  read_damping(child(cell, "damping"), options.ode);
+  return options;
+}
+
+}  // namespace
+
+const char* method_name(Method method) { return method == Method::equilibrium ? "equilibrium" : "two-stage"; }
+
+Method method_of(const Cell& root) {
+  return chosen<Method>(child(child(root, "solver"), "method"),
+                        {{"equilibrium", Method::equilibrium}, {"two-stage", Method::two_stage}});
+}
+
+SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key) {
+  const Cell cell = child(root, "solver");
+  SolverOptions options;
+  options.method = method_of(root);
+  check_use(cell, options.method);
+  options.energy = model_of(cell);
+  options.loop_path = loop_path_of(cell, ribbon);
+  const Cell duration = child(cell, "duration");
+  options.duration = duration.value != nullptr ? number(duration) : last_key > 0 ? last_key : 1;
+  if (child(cell, "steps").value != nullptr && ribbon.closure == geometry::Closure::loop) {
+    fail(child(cell, "steps"), "counts the load steps of an open strip; a loop's path finds its own");
+  }
+  options.steps = static_cast<int>(integer(child(cell, "steps")));
+  options.tolerance = number(child(cell, "tolerance"));
+  options.max_iterations = static_cast<int>(integer(child(cell, "max_iterations")));
+  options.barrier = number(child(cell, "barrier"));
+  options.time_step = number(child(cell, "time_step"));
+  options.stop_at_rest = boolean(child(cell, "stop_at_rest"));
+  if (options.method == Method::two_stage) {
+    options.two_stage = two_stage_of(cell, options.energy);
+    options.energy = options.two_stage.model;
+    if (options.duration / options.time_step > 1e8) fail(child(cell, "time_step"), "makes more than 1e8 steps");
+  }
+  return options;
+}
+
+InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon) {
+  const Cell cell = child(root, "initial");
+  const bool loop = ribbon.closure == geometry::Closure::loop;
+  InitialState initial;
+  initial.shape = loop ? InitialShape::equilibrium : InitialShape::straight;
+  if (cell.value == nullptr) return initial;
+  if (method_of(root) == Method::equilibrium) fail(cell, "has no effect with `method: equilibrium`");
+  if (const Cell shape = child(cell, "shape"); shape.value != nullptr) {
+    initial.shape = chosen<InitialShape>(shape, {{"straight", InitialShape::straight},
+                                                 {"coil", InitialShape::coil},
+                                                 {"closed", InitialShape::closed},
+                                                 {"equilibrium", InitialShape::equilibrium}});
+    if (loop && (initial.shape == InitialShape::straight || initial.shape == InitialShape::coil)) {
+      fail(shape, "is open; a loop starts `closed` or at `equilibrium`");
+    }
+    if (!loop && initial.shape == InitialShape::closed) fail(shape, "is for loops; the strip is open");
+  }
+  for (const char* name : {"radius", "slope"}) {
+    if (initial.shape != InitialShape::coil && child(cell, name).value != nullptr) {
+      fail(child(cell, name), "has no effect without `shape: coil`");
+    }
+  }
+  if (initial.shape == InitialShape::coil) {
+    initial.radius = number(child(cell, "radius"));
+    initial.slope = number(child(cell, "slope"));
+  }
+  initial.velocity = vector(child(cell, "velocity"));
+  initial.spin = vector(child(cell, "spin"));
+  return initial;
+}
+
+}  // namespace wunderlich::scene

@@ -1,0 +1,128 @@
+#include "wunderlich/scene/start.hpp"
+
+#include <algorithm>
+
+#include "wunderlich/geometry/chain.hpp"
+#include "wunderlich/solver/equilibrium.hpp"
+
+namespace wunderlich::scene {
+
+using constraint::Orientation;
+using constraint::Support;
+using geometry::Ribbon;
+using geometry::State;
+
+namespace {
+
+Pose undeformed_pose(const Support& support, const Ribbon& ribbon, const State& straight) {
+  const std::size_t segment = support.segment >= 0
+                                  ? static_cast<std::size_t>(support.segment)
+                                  : static_cast<std::size_t>(std::min(support.node, ribbon.segments - 1));
+  return {straight.r[static_cast<std::size_t>(support.node)], straight.q[segment]};
+}
+
+/// What the surroundings are at time 0, reached from the undeformed strip: supports move there, loads do not change.
+constraint::Surroundings at_start(const constraint::Surroundings& surroundings, const Ribbon& ribbon) {
+  const State straight = geometry::straight_state(ribbon);
+  constraint::Surroundings out = surroundings;
+  for (Support& support : out.supports) {
+    constraint::PoseKey goal = support.motion.keys.front();
+    goal.time = 1;
+    support.motion.keys = {{0, undeformed_pose(support, ribbon, straight), 0}, goal};
+    if (ribbon.is_loop()) support.motion.keys = {goal};
+  }
+  for (constraint::Load& load : out.loads) {
+    constraint::LoadKey key = constraint::load_at(load, 0);
+    key.time = 0;
+    load.keys = {key};
+  }
+  return out;
+}
+
+/// At rest at the end of a loading path, or, for a loop, where it has just been closed.
+Start along_path(const Scene& scene, const Ribbon& ribbon) {
+  solver::PathOptions options;
+  options.model = scene.solver.energy;
+  options.loop_path = scene.solver.loop_path;
+  const solver::PathProblem path = solver::make_path(ribbon, at_start(scene.surroundings, ribbon), options);
+  solver::PathState state = solver::start_path(path);
+  solver::NewtonWorkspace work;
+  const bool closing = scene.initial.shape == InitialShape::closed;
+  constexpr int kMaxFailures = 200;
+  for (int failures = 0; state.phase != solver::Phase::done;) {
+    if (closing && state.closed) break;
+    const solver::PathStep step = solver::advance(path, state, work);
+    failures = step.accepted ? 0 : failures + 1;
+    if (step.exhausted || failures > kMaxFailures) return {{}, "its start was not reached: " + step.failure};
+  }
+  return {geometry::state_of(solver::ribbon_of(path, state), state.chain, 0), ""};
+}
+
+/// Moves the whole strip so that its first support is where it is held at time 0.
+void bring_to_supports(const Scene& scene, const Ribbon& ribbon, State& state) {
+  if (scene.surroundings.supports.empty()) return;
+  const Support& support = scene.surroundings.supports.front();
+  const Pose goal = constraint::pose_at(support.motion, 0);
+  Pose now = undeformed_pose(support, ribbon, state);
+  if (support.segment < 0 && support.orientation == Orientation::full) {
+    now.frame = state.end_frame[support.node == 0 ? 0 : 1];
+  }
+  const Quat turn =
+      support.orientation == Orientation::full ? goal.frame * now.frame.conjugate() : Quat(Quat::Identity());
+  for (Vec3& r : state.r) r = goal.position + turn * (r - now.position);
+  for (Quat& q : state.q) q = turn * q;
+  for (Quat& q : state.end_frame) q = turn * q;
+}
+
+/// A coil of constant curvature and ruling slope: a ring, a spiral staircase. Exactly isometric.
+State coil(const Scene& scene, const Ribbon& ribbon) {
+  const State straight = geometry::straight_state(ribbon);
+  geometry::Chain chain = geometry::straight_chain(ribbon, {Vec3::Zero(), straight.q.front()});
+  const double eta = scene.initial.slope;
+  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
+    const int node = static_cast<int>(i);
+    if (geometry::kappa_is_free(ribbon, node)) chain.kappa[i] = 1 / (scene.initial.radius * (1 + eta * eta));
+    if (geometry::eta_is_free(ribbon, node)) chain.eta[i] = eta;
+  }
+  return geometry::state_of(ribbon, chain, 0);
+}
+
+Start shape_of(const Scene& scene, const Ribbon& ribbon) {
+  switch (scene.initial.shape) {
+    case InitialShape::straight:
+      return {geometry::straight_state(ribbon), ""};
+    case InitialShape::coil:
+      return {coil(scene, ribbon), ""};
+    case InitialShape::equilibrium:
+    case InitialShape::closed:
+      return along_path(scene, ribbon);
+  }
+  return {};
+}
+
+void set_velocity(const InitialState& initial, const Ribbon& ribbon, State& state) {
+  Vec3 center = Vec3::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < state.r.size(); ++i) {
+    center += ribbon.node_mass[i] * state.r[i];
+    mass += ribbon.node_mass[i];
+  }
+  center /= mass;
+  for (std::size_t i = 0; i < state.r.size(); ++i) {
+    state.r_dot[i] = initial.velocity + initial.spin.cross(state.r[i] - center);
+  }
+}
+
+}  // namespace
+
+Start start_of(const Scene& scene, const Ribbon& ribbon) {
+  Start start = shape_of(scene, ribbon);
+  if (!start.failure.empty()) return start;
+  const bool placed = scene.initial.shape == InitialShape::equilibrium || ribbon.is_loop();
+  if (!placed) bring_to_supports(scene, ribbon, start.shape);
+  start.shape.time = 0;
+  set_velocity(scene.initial, ribbon, start.shape);
+  return start;
+}
+
+}  // namespace wunderlich::scene
