@@ -91,6 +91,7 @@ void prepare(const two_stage::Options& options, const geometry::Ribbon& ribbon, 
   work.parallel_weight = two_stage::rest_parallel_weight(ribbon, options.ode.weight_scale);
   work.inertia.assign(shape.q.size(), 0.0);
   work.carried = work.torque_frame = shape.q;
+  work.before = shape;
   work.q_start = shape.q;
   work.eta_start = shape.eta;
 }

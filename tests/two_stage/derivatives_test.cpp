@@ -38,6 +38,8 @@ Setting setting(const geometry::Ribbon& ribbon, bool central, std::mt19937& rand
     s.shape.eta.back() = ribbon.seam_sign() * s.shape.eta.front();
   }
   prepare(s.options, ribbon, s.drive, s.shape, s.work);
+  s.options.opt.proximal = 0.3;
+  for (double& eta : s.work.before.eta) eta += 0.1 * normal(random);
   for (std::size_t i = 0; i < s.shape.q.size(); ++i) {
     s.work.inertia[i] = 0.3 + 0.1 * static_cast<double>(i);
     s.work.carried[i] = s.shape.q[i] * math::exp_map(0.2 * Vec3(normal(random), normal(random), normal(random)));
@@ -86,6 +88,7 @@ TEST(TwoStageObjective, IsTheEnergyOfTheOtherLayers) {
     Setting s = setting(named.ribbon, false, random);
     std::fill(s.work.inertia.begin(), s.work.inertia.end(), 0.0);
     std::fill(s.work.torque.begin(), s.work.torque.end(), Vec3::Zero());
+    s.work.before = s.shape;
     const geometry::State at = moved_by(0, s);
     const double expected = energy::elastic_value(s.ribbon, s.options.model, at) +
                             energy::barrier_value(s.ribbon, s.options.opt.barrier, at) +

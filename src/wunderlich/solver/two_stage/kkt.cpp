@@ -162,14 +162,15 @@ void add_second_order(const Ribbon& ribbon, const Options& options, const geomet
 
 /// Rows without an unknown or a hinge stand alone; a trace on the multipliers keeps a hinge between two held frames
 /// solvable.
-void add_diagonal(const Ribbon& ribbon, double shift, Workspace& work) {
+void add_diagonal(const Ribbon& ribbon, const OptOptions& options, double shift, Workspace& work) {
   const double stiffness = ribbon.bending_stiffness, width = ribbon.width;
   for (int b = 0; b < block_count(ribbon); ++b) {
     const auto i = static_cast<std::size_t>(b);
     const double length = ribbon.rest_length[i < ribbon.rest_length.size() ? i : i - 1];
     const int row = block_row(ribbon, b);
     const bool no_frame = i >= work.holding.frame_held.size() || work.holding.frame_held[i];
-    work.system.at(row, row) += work.holding.eta_held[i] ? 1.0 : shift * stiffness * length / width;
+    const double proximal = proximal_stiffness(ribbon, options, i);
+    work.system.at(row, row) += work.holding.eta_held[i] ? 1.0 : proximal + shift * stiffness * length / width;
     for (int k = 1; k < 4; ++k) {
       work.system.at(row + k, row + k) += no_frame ? 1.0 : shift * stiffness * width / length;
     }
@@ -199,7 +200,7 @@ void assemble_kkt(const Ribbon& ribbon, const Options& options, const geometry::
     add_constraints(ribbon, shape, h, work);
     if (curvature == Curvature::exact) add_second_order(ribbon, options, shape, multipliers, h, work);
   }
-  add_diagonal(ribbon, shift, work);
+  add_diagonal(ribbon, options.opt, shift, work);
 }
 
 bool factor_kkt(const Ribbon& ribbon, Workspace& work) {
@@ -208,23 +209,37 @@ bool factor_kkt(const Ribbon& ribbon, Workspace& work) {
   return inertia.sound && inertia.negative == 2 * block_count(ribbon);
 }
 
-void solve_kkt(const Ribbon& ribbon, Workspace& work, std::vector<double>& multipliers) {
+namespace {
+
+/// Solves for right-hand sides by block, four of the unknowns (none: 0) and two of the constraints.
+void solve_blocks(const Ribbon& ribbon, const std::vector<double>* gradient, Workspace& work,
+                  std::vector<double>& step) {
   const int blocks = block_count(ribbon);
   work.kkt_rhs.assign(static_cast<std::size_t>(kRows * blocks), 0.0);
-  const auto row = [&](int block) { return static_cast<std::size_t>(block_row(ribbon, block)); };
   for (int b = 0; b < blocks; ++b) {
-    const auto i = static_cast<std::size_t>(b);
-    for (std::size_t k = 0; k < 4; ++k) work.kkt_rhs[row(b) + k] = -work.gradient[4 * i + k];
-    for (std::size_t k = 0; k < 2; ++k) work.kkt_rhs[row(b) + kMultiplier + k] = -work.residual[2 * i + k];
+    const auto row = static_cast<std::size_t>(block_row(ribbon, b)), i = static_cast<std::size_t>(b);
+    for (std::size_t k = 0; gradient != nullptr && k < 4; ++k) work.kkt_rhs[row + k] = -(*gradient)[4 * i + k];
+    for (std::size_t k = 0; k < 2; ++k) work.kkt_rhs[row + kMultiplier + k] = -work.residual[2 * i + k];
   }
   math::solve(work.factored, work.kkt_rhs);
-  work.step.resize(static_cast<std::size_t>(4 * blocks));
-  multipliers.resize(static_cast<std::size_t>(2 * blocks));
+  step.resize(static_cast<std::size_t>(4 * blocks));
   for (int b = 0; b < blocks; ++b) {
-    const auto i = static_cast<std::size_t>(b);
-    for (std::size_t k = 0; k < 4; ++k) work.step[4 * i + k] = work.kkt_rhs[row(b) + k];
-    for (std::size_t k = 0; k < 2; ++k) multipliers[2 * i + k] = work.kkt_rhs[row(b) + kMultiplier + k];
+    const auto row = static_cast<std::size_t>(block_row(ribbon, b)), i = static_cast<std::size_t>(b);
+    for (std::size_t k = 0; k < 4; ++k) step[4 * i + k] = work.kkt_rhs[row + k];
   }
 }
+
+}  // namespace
+
+void solve_kkt(const Ribbon& ribbon, Workspace& work, std::vector<double>& multipliers) {
+  solve_blocks(ribbon, &work.gradient, work, work.step);
+  multipliers.resize(static_cast<std::size_t>(2 * block_count(ribbon)));
+  for (int b = 0; b < block_count(ribbon); ++b) {
+    const auto row = static_cast<std::size_t>(block_row(ribbon, b)), i = static_cast<std::size_t>(b);
+    for (std::size_t k = 0; k < 2; ++k) multipliers[2 * i + k] = work.kkt_rhs[row + kMultiplier + k];
+  }
+}
+
+void solve_correction(const Ribbon& ribbon, Workspace& work) { solve_blocks(ribbon, nullptr, work, work.correction); }
 
 }  // namespace wunderlich::solver::two_stage

@@ -28,4 +28,7 @@ bool factor_kkt(const geometry::Ribbon& ribbon, Workspace& work);
 /// Solves for the step from work.gradient and work.residual into work.step, and the new multipliers.
 void solve_kkt(const geometry::Ribbon& ribbon, Workspace& work, std::vector<double>& multipliers);
 
+/// The step that takes back work.residual, as found after a step, with the same factors; into work.correction.
+void solve_correction(const geometry::Ribbon& ribbon, Workspace& work);
+
 }  // namespace wunderlich::solver::two_stage

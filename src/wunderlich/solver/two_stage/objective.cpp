@@ -123,6 +123,11 @@ double frame_value(const Ribbon& ribbon, const geometry::State& shape, const Wor
   return sum;
 }
 
+double proximal_stiffness(const Ribbon& ribbon, const OptOptions& options, std::size_t block) {
+  const double length = ribbon.rest_length[std::min(block, ribbon.rest_length.size() - 1)];
+  return options.proximal * ribbon.bending_stiffness * length / ribbon.width;
+}
+
 double objective_value(const Ribbon& ribbon, const Options& options, const geometry::State& shape,
                        const Workspace& work) {
   double sum = options.opt.central_rate ? central_elastic(ribbon, options.model, shape, work, nullptr) : 0;
@@ -134,6 +139,10 @@ double objective_value(const Ribbon& ribbon, const Options& options, const geome
       sum += barrier_scale(ribbon, options.opt, s) * energy::ruling_barrier(ruling_ratio(ribbon, shape, s)).value;
     }
     sum += frame_value(ribbon, shape, work, s);
+  }
+  for (std::size_t b = 0; b < static_cast<std::size_t>(block_count(ribbon)); ++b) {
+    const double away = shape.eta[b] - work.before.eta[b];
+    sum += 0.5 * proximal_stiffness(ribbon, options.opt, b) * away * away;
   }
   return sum;
 }
@@ -157,6 +166,9 @@ void objective_gradient(const Ribbon& ribbon, const Options& options, const geom
     add_end_slope(work, s + 1, Vec3(slope[3], slope[4], slope[5]), work.gradient);
     const Vec3 turn = frame_terms(ribbon, shape, work, s).gradient;
     for (std::size_t k = 0; k < 3; ++k) work.gradient[4 * s + 1 + k] += turn[static_cast<Eigen::Index>(k)];
+  }
+  for (std::size_t b = 0; b < static_cast<std::size_t>(block_count(ribbon)); ++b) {
+    work.gradient[4 * b] += proximal_stiffness(ribbon, options.opt, b) * (shape.eta[b] - work.before.eta[b]);
   }
   clear_held(ribbon, work, work.gradient);
 }

@@ -28,7 +28,8 @@ void refresh_strains(const geometry::Ribbon& ribbon, const energy::Model& model,
 /// (kappa, tau, eta) at the two ends of a link, from the refreshed strains.
 energy::Ends link_ends(const geometry::State& shape, const Workspace& work, std::size_t segment);
 
-/// V + E_para + E_I + barrier - work of torques [J], at the refreshed strains; infinite where rulings meet.
+/// V + E_para + E_I + barrier + proximal term - work of torques [J], at the refreshed strains; infinite where rulings
+/// meet.
 /// @eq Shen2015:21
 double objective_value(const geometry::Ribbon& ribbon, const Options& options, const geometry::State& shape,
                        const Workspace& work);
@@ -51,6 +52,9 @@ double frame_value(const geometry::Ribbon& ribbon, const geometry::State& shape,
                    std::size_t segment);
 energy::TurnTerms frame_terms(const geometry::Ribbon& ribbon, const geometry::State& shape, const Workspace& work,
                               std::size_t segment);
+
+/// Stiffness of the proximal term in eta of one block [J]; work.before has the rulings it pulls towards.
+double proximal_stiffness(const geometry::Ribbon& ribbon, const OptOptions& options, std::size_t block);
 
 /// Largest |w eta'/2|.
 double largest_ruling_ratio(const geometry::Ribbon& ribbon, const geometry::State& shape);

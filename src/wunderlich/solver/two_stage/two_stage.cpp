@@ -166,6 +166,7 @@ Options printed_options() {
   options.opt.minimiser = Minimiser::lbfgs;
   options.opt.projection = Projection::gauss_seidel;
   options.opt.barrier = 0;
+  options.opt.proximal = 0;
   options.opt.central_rate = true;
   options.opt.step_size = 0.05;
   options.opt.max_iterations = 30;

@@ -60,6 +60,8 @@ struct OptOptions {
   Minimiser minimiser = Minimiser::newton;
   Projection projection = Projection::direct;
   double barrier = 1e-3;      ///< e1 of -ln(1 - x^2) in the objective; 0: the bound is a constraint alone
+  double proximal = 1e-2;     ///< mu of (mu/2) D (l/w) sum (eta - eta of the last step)^2: holds rulings where kappa
+                              ///< vanishes and nothing else does; no bias at rest
   bool central_rate = false;  ///< eta' by the central difference of Eq. 10 (only with lbfgs)
   double step_size = 1;       ///< h of an L-BFGS step; 0.03 to 0.05 in the paper's Table 1
   int max_iterations = 50;

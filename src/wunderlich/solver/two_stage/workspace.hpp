@@ -53,7 +53,7 @@ struct Workspace {
   std::vector<Vec3> hinge_slope;         ///< (hinges) dV/dstrain
   std::vector<double> kkt_rhs;
   math::BandedMatrix system, factored;
-  std::vector<double> gradient, previous_gradient, step, previous_step;
+  std::vector<double> gradient, previous_gradient, step, correction, previous_step;
   std::vector<double> residual;  ///< (2 a hinge) gamma h, (kappa eta - tau) h
   std::vector<Quat> q_start, lbfgs_q;
   std::vector<double> eta_start, lbfgs_eta, gradient_change;
