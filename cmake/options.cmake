@@ -26,8 +26,8 @@ set(WUNDERLICH_SANITIZE_SKIP "" CACHE STRING "Undefined-behaviour checks to leav
 if(WUNDERLICH_SANITIZE)
   target_compile_options(wunderlich_options INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-    # Instrumented code of the standard library's <regex> and <string> sets off false alarms of g++ 12.
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-restrict>)
+    # Instrumented code of the standard library's <regex> sets off false alarms of g++ 12.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(wunderlich_options INTERFACE -fsanitize=address,undefined)
   target_compile_definitions(wunderlich_options INTERFACE _GLIBCXX_ASSERTIONS)
   if(WUNDERLICH_SANITIZE_SKIP)
