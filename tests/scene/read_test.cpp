@@ -156,12 +156,12 @@ gravity: [0, 0, -9.81]
   EXPECT_EQ(scene.ribbon.clamped, (std::array<bool, 2>{true, true}));
 }
 
-TEST(ReadScene, AnEndThatKeepsItsTangentFreeHoldsTheLastSegment) {
+TEST(ReadScene, AnEndThatKeepsItsTangentFreeHasAFrameOfItsOwn) {
   const Scene scene =
       read(plain + "clamps: [{at: start, orientation: about-tangent}, {at: end, orientation: about-tangent}]");
-  EXPECT_EQ(scene.ribbon.clamped, (std::array<bool, 2>{false, false}));
-  EXPECT_EQ(scene.surroundings.supports.at(0).segment, 0);
-  EXPECT_EQ(scene.surroundings.supports.at(1).segment, 3);
+  EXPECT_EQ(scene.ribbon.clamped, (std::array<bool, 2>{true, true}));
+  EXPECT_EQ(scene.surroundings.supports.at(0).segment, -1);
+  EXPECT_EQ(scene.surroundings.supports.at(1).segment, -1);
   EXPECT_EQ(scene.surroundings.supports.at(1).node, 4);
 }
 

@@ -33,9 +33,8 @@ enum class Orientation {
   full,           ///< a clamp
 };
 
-/// A support at a node or a segment. At an end node of an open strip with `full` orientation the node's own
-/// frame is held (half-cell hinge); anywhere else the frame is that of the segment and the position that of
-/// its first node.
+/// A support at a node or a segment. At an end node of an open strip the node's own frame is held (half-cell hinge);
+/// anywhere else the frame is that of the segment and the position that of its first node.
 struct Support {
   int node = 0;                                         ///< node whose position is held; for a segment its first node
   int segment = -1;                                     ///< segment whose frame is held, -1: the end node's own frame

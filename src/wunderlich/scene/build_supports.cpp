@@ -184,8 +184,6 @@ PlacedSupport clamp_of(const Cell& cell, const Strip& strip) {
   support.hold_position = held_axes(child(cell, "free"));
   const bool full = text(child(cell, "orientation")) == "full";
   support.orientation = full ? Orientation::full : Orientation::about_tangent;
-  // Only a whole frame can be held at the end itself; a rotation about the centerline is that of a segment.
-  if (clamp.end && !full) support.segment = std::min(support.node, strip.spec.segments - 1);
   support.motion = motion_of(cell, {clamp.u, 0, 0}, true);
   return clamp;
 }
@@ -247,7 +245,8 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
       if (!moves) fail(release, "has no effect with `method: equilibrium`");
       p.support.release = number(release);
     }
-    if (p.end && p.support.orientation == Orientation::full) ribbon.clamped[p.support.node == 0 ? 0 : 1] = true;
+    // Held at the end itself: the half cell up to it must be able to bend.
+    if (p.end) ribbon.clamped[p.support.node == 0 ? 0 : 1] = true;
     surroundings.supports.push_back(p.support);
   }
   const Cell forces = child(root, "forces");

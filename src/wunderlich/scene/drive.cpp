@@ -1,5 +1,7 @@
 #include "wunderlich/scene/drive.hpp"
 
+#include <algorithm>
+
 #include "wunderlich/math/rotation.hpp"
 
 namespace wunderlich::scene {
@@ -21,6 +23,10 @@ two_stage::Drive drive_between(const Scene& scene, const geometry::Ribbon& ribbo
     held.position = after.position;
     held.orientation = support.orientation;
     held.segment = support.segment;
+    // The two-stage method knows an end's own frame only where all of it is prescribed.
+    if (support.segment < 0 && support.orientation == constraint::Orientation::about_tangent) {
+      held.segment = std::min(support.node, ribbon.segments - 1);
+    }
     held.frame = after.frame;
     held.turn = math::log_map(before.frame.conjugate() * after.frame)[2];
     drive.supports.push_back(held);

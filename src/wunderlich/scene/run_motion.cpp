@@ -196,7 +196,8 @@ Ribbon motion_ribbon(const Scene& scene, double time) {
   spec.clamped = {false, false};
   if (spec.closure == geometry::Closure::open) {
     for (const constraint::Support& support : scene.surroundings.supports) {
-      const bool clamps = support.segment < 0 && support.orientation == constraint::Orientation::full;
+      const bool at_end = support.node == 0 || support.node == spec.segments;
+      const bool clamps = at_end && support.segment < 0 && support.orientation == constraint::Orientation::full;
       if (clamps && holds(support, time)) spec.clamped[support.node == 0 ? 0 : 1] = true;
     }
   }

@@ -21,7 +21,12 @@ Pose undeformed_pose(const Support& support, const Ribbon& ribbon, const State& 
   return {straight.r[static_cast<std::size_t>(support.node)], straight.q[segment]};
 }
 
-/// What the surroundings are at time 0, reached from the undeformed strip: supports move there, loads do not change.
+/// A load that grows from nothing.
+constraint::Load growing(int node, constraint::LoadFrame frame, const Vec3& force, const Vec3& torque) {
+  return {node, frame, {{0, Vec3::Zero(), Vec3::Zero()}, {1, force, torque}}};
+}
+
+/// What the surroundings are at time 0, reached from the undeformed strip: supports move there, loads and weight grow.
 constraint::Surroundings at_start(const constraint::Surroundings& surroundings, const Ribbon& ribbon) {
   const State straight = geometry::straight_state(ribbon);
   constraint::Surroundings out = surroundings;
@@ -32,9 +37,13 @@ constraint::Surroundings at_start(const constraint::Surroundings& surroundings, 
     if (ribbon.is_loop()) support.motion.keys = {goal};
   }
   for (constraint::Load& load : out.loads) {
-    constraint::LoadKey key = constraint::load_at(load, 0);
-    key.time = 0;
-    load.keys = {key};
+    const constraint::LoadKey key = constraint::load_at(load, 0);
+    load = growing(load.node, load.frame, key.force, key.torque);
+  }
+  out.gravity.setZero();
+  for (int i = 0; i <= ribbon.segments && !surroundings.gravity.isZero(0); ++i) {
+    const Vec3 weight = ribbon.node_mass[static_cast<std::size_t>(i)] * surroundings.gravity;
+    out.loads.push_back(growing(i, constraint::LoadFrame::space, weight, Vec3::Zero()));
   }
   return out;
 }

@@ -48,14 +48,14 @@ struct TangentTurn {
 
 TangentTurn tangent_turn(const Quat& q, const Quat& reference) {
   const Vec3 t0 = reference * Vec3::UnitZ(), t1 = q * Vec3::UnitZ();
-  const Quat carried = Quat::FromTwoVectors(t0, t1) * reference;
+  const Quat carried = math::shortest_rotation(t0, t1) * reference;
   const Vec3 turn = math::log_map(q * carried.conjugate());
   return {turn.dot(t1), (t0 + t1) / (1 + t0.dot(t1))};
 }
 
-/// Calls `row(node, v, theta, residual)` for each row of a hold.
+/// Calls `emit(v, theta, residual)` for each row of a hold.
 template <class Emit>
-void for_each_row(const Hold& hold, const Kinematics& k, const Emit& emit) {
+void for_each_row(const Hold& hold, const Chain& chain, const Kinematics& k, const Emit& emit) {
   const auto i = static_cast<std::size_t>(hold.node);
   const Vec3 gap = k.r[i] - hold.target.position;
   for (int c = 0; c < 3; ++c) {
@@ -66,7 +66,7 @@ void for_each_row(const Hold& hold, const Kinematics& k, const Emit& emit) {
     const Vec3 turn = math::log_map(k.q[i] * hold.target.frame.conjugate());
     for (int c = 0; c < 3; ++c) emit(Vec3::Zero(), Vec3::Unit(c), turn[c]);
   } else if (hold.orientation == Orientation::about_tangent) {
-    const TangentTurn turn = tangent_turn(k.q[i], hold.target.frame);
+    const TangentTurn turn = tangent_turn(hold.on_base ? chain.base.frame : k.q[i], hold.target.frame);
     emit(Vec3::Zero(), turn.gradient, turn.angle);
   }
 }
@@ -134,13 +134,17 @@ void append_rows(const Ribbon& ribbon, const ChainProblem& problem, const Chain&
     }
   }
   for (const Hold& hold : problem.holds) {
-    for_each_row(hold, k, [&](const Vec3& v, const Vec3& theta, double residual) {
+    for_each_row(hold, chain, k, [&](const Vec3& v, const Vec3& theta, double residual) {
       ChainRow row;
       row.node = hold.node;
       row.v = v;
-      row.theta = theta;
       row.residual = residual;
-      row.penalty = v.isZero() ? penalty.rotation : penalty.position;
+      (hold.on_base ? row.base_theta : row.theta) = theta;
+      // Rows on the base need none: its pivots are those of a small matrix, counted exactly.
+      if (!v.isZero())
+        row.penalty = penalty.position;
+      else if (!hold.on_base)
+        row.penalty = penalty.rotation;
       push(row);
     });
   }
@@ -309,7 +313,7 @@ void constraint_residuals(const Ribbon& ribbon, const ChainProblem& problem, con
     residuals.insert(residuals.end(), gap.u.begin(), gap.u.end());
   }
   for (const Hold& hold : problem.holds) {
-    for_each_row(hold, k, [&](const Vec3&, const Vec3&, double residual) { residuals.push_back(residual); });
+    for_each_row(hold, chain, k, [&](const Vec3&, const Vec3&, double residual) { residuals.push_back(residual); });
   }
 }
 

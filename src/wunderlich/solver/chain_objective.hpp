@@ -17,8 +17,9 @@ struct Hold {
   int node = 0;                                    ///< link whose node and frame are held; N: the end frame
   std::array<bool, 3> position{true, true, true};  ///< world axes
   constraint::Orientation orientation = constraint::Orientation::full;
-  Pose target;   ///< about_tangent: the frame to be transported and turned
-  int end = -1;  ///< end of the strip (0, 1) whose support this is; -1: none
+  Pose target;           ///< about_tangent: the frame to be transported and turned
+  bool on_base = false;  ///< the frame held is the start node's own (only for about_tangent; node 0)
+  int end = -1;          ///< end of the strip (0, 1) whose support this is; -1: none
 };
 
 /// A force and torque on the pose of one link (N: the end frame, -1: the base, the start node's own frame).

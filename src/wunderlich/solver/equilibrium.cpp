@@ -247,7 +247,7 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
     for (std::size_t k = 0; k < row_count(hold); ++k, ++row) {
       if (hold.end < 0) continue;
       reactions.force[static_cast<std::size_t>(hold.end)] -= row->multiplier * row->v;
-      reactions.torque[static_cast<std::size_t>(hold.end)] -= row->multiplier * row->theta;
+      reactions.torque[static_cast<std::size_t>(hold.end)] -= row->multiplier * (row->theta + row->base_theta);
     }
   }
   return reactions;

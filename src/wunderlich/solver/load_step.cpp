@@ -34,6 +34,7 @@ Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index,
   hold.node = held_link(support);
   hold.position = support.hold_position;
   hold.orientation = support.orientation;
+  hold.on_base = support.orientation == Orientation::about_tangent && holds_base_frame(path.ribbon, support);
   if (!path.ribbon.is_loop() && support.node == 0) hold.end = 0;
   if (!path.ribbon.is_loop() && support.node == path.ribbon.segments) hold.end = 1;
   hold.target = pose_of(path, state, index, t);
@@ -91,6 +92,10 @@ void add_loads(const PathProblem& path, const PathState& state, double t, ChainP
 }
 
 }  // namespace
+
+bool holds_base_frame(const Ribbon& ribbon, const Support& support) {
+  return ribbon.clamped[0] && support.node == 0 && support.segment < 0;
+}
 
 int held_link(const Support& support) { return support.segment >= 0 ? support.segment : support.node; }
 

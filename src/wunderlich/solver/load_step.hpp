@@ -12,6 +12,9 @@ ChainProblem problem_at(const PathProblem& path, const PathState& state, double 
 /// The link whose pose a support holds; the number of segments for the end node's own frame.
 int held_link(const constraint::Support& support);
 
+/// Is it the start node's own frame that the support holds, the one before the first hinge?
+bool holds_base_frame(const geometry::Ribbon& ribbon, const constraint::Support& support);
+
 /// Is the start node's pose prescribed, so that it is the base of the chain.
 bool base_is_held(const PathProblem& path);
 

@@ -68,7 +68,9 @@ void note_frames(const PathProblem& path, PathState& state) {
   geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
   state.transported.clear();
   for (const auto& support : path.surroundings.supports) {
-    state.transported.push_back(k.q[static_cast<std::size_t>(held_link(support))]);
+    state.transported.push_back(holds_base_frame(path.ribbon, support)
+                                    ? state.chain.base.frame
+                                    : k.q[static_cast<std::size_t>(held_link(support))]);
   }
 }
 

@@ -46,13 +46,12 @@ void record_step(const Ribbon& ribbon, const geometry::State& shape, Workspace& 
   }
 }
 
-/// Keeps the pair of the last iteration; returns how much the gradient changed, relative to what it was.
+/// Keeps the pair of the last iteration; returns how much the gradient changed.
 double remember(Workspace& work) {
-  const double before = norm(work.previous_gradient);
   work.gradient_change = work.gradient;
   for (std::size_t i = 0; i < work.gradient.size(); ++i) work.gradient_change[i] -= work.previous_gradient[i];
   work.memory.push(work.previous_step, work.gradient_change);
-  return before > 0 ? norm(work.gradient_change) / before : 0;
+  return norm(work.gradient_change);
 }
 
 }  // namespace
@@ -61,13 +60,16 @@ bool minimise_lbfgs(const Ribbon& ribbon, const Options& options, geometry::Stat
                     StepReport& report) {
   work.memory.reset(static_cast<std::size_t>(4 * block_count(ribbon)));
   bool feasible = project(ribbon, options, shape, work, report);
+  double first = 0;  // gradient at the start: changes count against it
   for (int iteration = 0;; ++iteration) {
     if (!gradient_now(ribbon, options, shape, work)) {
       report.failure = "stage opt: the gradient is not finite";
       return false;
     }
-    if (iteration > 0) {
-      report.gradient_change = remember(work);
+    if (iteration == 0) {
+      first = norm(work.gradient);
+    } else {
+      report.gradient_change = first > 0 ? remember(work) / first : 0;
       report.converged = feasible && report.gradient_change <= options.opt.gradient_change;
     }
     if (report.converged || iteration == options.opt.max_iterations) return true;

@@ -65,7 +65,7 @@ struct OptOptions {
   bool central_rate = false;  ///< eta' by the central difference of Eq. 10 (only with lbfgs)
   double step_size = 1;       ///< h of an L-BFGS step; 0.03 to 0.05 in the paper's Table 1
   int max_iterations = 50;
-  double gradient_change = 0.01;       ///< lbfgs stops when the gradient changes by less than this share
+  double gradient_change = 0.01;       ///< lbfgs stops when the gradient changes by less than this share of the first
   double step_tolerance = 1e-6;        ///< newton stops after a step below this [rad]
   double constraint_tolerance = 1e-6;  ///< on gamma and kappa eta - tau times the hinge's length
   int max_sweeps = 2000;               ///< of Gauss-Seidel in one linear solve
