@@ -18,6 +18,7 @@ double normalized_energy(const Case& c) {
          (c.ribbon.bending_stiffness * c.ribbon.width);
 }
 
+/// @eq Shen2015:alg1 @eq Shen2015:19
 TEST(TwoStage, MeetsTheConstraintsAtEveryStepOfATiltedFall) {
   Case c = cantilever(30, 0.3);
   for (int k = 0; k < 60; ++k) {

@@ -20,6 +20,7 @@ double bound(const Case& c) {
   return two_stage::stable_step(c.ribbon, two_stage::rest_parallel_weight(c.ribbon, c.options.ode.weight_scale));
 }
 
+/// @eq Shen2015:20
 TEST(StageOde, KeepsLengthsWhileTheStripFalls) {
   Case c = cantilever(30, 0.3);
   for (int k = 0; k < 40; ++k) EXPECT_LE(run(5e-4, 1, c).constraints.max_length_error, 1e-9);
@@ -70,7 +71,9 @@ TEST(StageOde, IsOfFirstOrderInTheStep) {
   double last = 0;
   for (const double fraction : {0.5, 0.25, 0.125}) {
     const double error = (tip_after(duration, fraction, 0) - limit).norm();
-    if (last > 0) EXPECT_NEAR(std::log2(last / error), 1, 0.15);
+    if (last > 0) {
+      EXPECT_NEAR(std::log2(last / error), 1, 0.15);
+    }
     last = error;
   }
 }

@@ -65,6 +65,7 @@ double distance(const geometry::State& a, const geometry::State& b) {
   return worst;
 }
 
+/// @eq Shen2015:22
 TEST(Projection22, ADirectStepIsADenseStep) {
   Case c = floating(9);
   const geometry::State start = near_feasible(c.ribbon);
@@ -126,6 +127,7 @@ TEST(Projection22, BringsRulingsBackWithinTheBound) {
   }
 }
 
+/// @eq Shen2015:21
 TEST(StageOpt, NewtonAndLbfgsComeToTheSameRest) {
   double value[2];
   for (const auto kind : {two_stage::Minimiser::newton, two_stage::Minimiser::lbfgs}) {
@@ -148,6 +150,7 @@ TEST(StageOpt, NewtonAndLbfgsComeToTheSameRest) {
   EXPECT_NEAR(value[1] / value[0], 1, 1e-6);
 }
 
+/// @eq Shen2015:8
 TEST(FlatRegion, MakesRulingsAsSmallAsTheBoundAllows) {
   Case c = floating(30);
   geometry::State& shape = c.state.shape;
