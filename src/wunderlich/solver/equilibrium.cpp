@@ -20,7 +20,8 @@ constexpr double kLargestTurn = 1;    // of a support in one load step [rad]
 constexpr int kProximalPasses = 3;    // minimisations with a fictitious mass a load step
 constexpr double kProximity = 1e4;    // that mass, in units of D w / l^4 per length
 constexpr int kSettleRounds = 30;
-constexpr double kSettleTime = 0.05;  // on the clock of the path, for the film
+constexpr double kSettleTime = 0.05;    // on the clock of the path, for the film
+constexpr double kTurnedAtRest = 1e-9;  // of a tangent between two solutions at rest [rad]
 
 /// Between two held places flat strips buckle and snap: go there with a fictitious mass, in small steps.
 bool is_proximal(const PathProblem& path) { return path.surroundings.supports.size() > 1; }
@@ -83,6 +84,19 @@ PathStep load_step(const PathProblem& path, PathState& state, NewtonWorkspace& w
   return step;
 }
 
+/// Takes the strip's frames for the next reference of the orientation constraints; says how far their tangents had
+/// turned against the last one [rad]. At rest they have not: only then is the constraint's torque about the tangent.
+double renew_frames(const PathProblem& path, PathState& state) {
+  const std::vector<Quat> before = state.transported;
+  note_frames(path, state);
+  double turned = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (path.surroundings.supports[i].orientation != constraint::Orientation::about_tangent) continue;
+    turned = std::max(turned, (before[i] * Vec3::UnitZ() - state.transported[i] * Vec3::UnitZ()).norm());
+  }
+  return turned;
+}
+
 /// The static minimum at the end of the path; where Newton does not reach it at once, proximal steps with less and
 /// less fictitious mass come closer first. `t` counts those.
 PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
@@ -90,7 +104,7 @@ PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace&
   const double end = path.options.duration;
   step.accepted = solve_at(path, state, end, {}, work, step);
   if (step.accepted) {
-    enter(path, Phase::done, state);
+    if (renew_frames(path, state) < kTurnedAtRest) enter(path, Phase::done, state);
     state.clock += kSettleTime;
     return step;
   }
