@@ -13,7 +13,15 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE = (1200, 750)
 
 # Keys that the page understands, from its usual view, and what the program is asked beside the scene's name.
-MORE = {"moebius": {"set": ["ribbon.segments=100"]}}
+MORE = {
+    "moebius": {"set": ["ribbon.segments=100"]},
+    # Motions are shown where they are busy, not where they end.
+    "belt-release-stiff": {"set": ["solver.duration=0.3"]},
+    "belt-release-soft": {"set": ["solver.duration=0.3"]},
+    "twist-release-stiff": {"set": ["solver.duration=0.3"]},
+    "twist-release-soft": {"set": ["solver.duration=0.3"]},
+    "swing": {"set": ["solver.duration=0.72"]},
+}
 
 STAGE = """<style>
   .tools, .player, .legend, .top, .figures, .card, footer, #warnings { display: none !important }
