@@ -62,8 +62,22 @@ class Motion(ProgramTest):
         self.assertEqual(self.without_clock("run"), self.without_clock("whole"))
 
     def test_a_step_beyond_the_stability_bound_is_said(self):
-        message = self.expect(0, "run", *SWING, "--out", "run").stderr
+        beyond = ("solver.substeps=false", "solver.time_step=5e-4", "solver.duration=0.01")  # the bound is 4.1e-4
+        settings = [word for setting in beyond for word in ("--set", setting)]
+        message = self.expect(0, "run", *SWING, *settings, "--out", "run").stderr
         self.assertIn("stability bound", message)
+
+    def test_a_released_clamp_is_held_to_the_last(self):
+        arguments = ["twist-release-stiff", "--formats", "none", "--set", "clamps.1.release=0.05"]
+        self.expect(0, "run", *arguments, "--set", "solver.duration=0.05", "--out", "run")
+        self.expect(0, "run", *arguments, "--set", "solver.duration=0.15", "--out", "longer")
+        self.assertEqual(self.history()[-1]["time"], 0.05)
+        self.assertGreater(self.history("longer")[-1]["kinetic"], 10 * self.history()[-1]["kinetic"])
+
+    def test_a_loop_of_lost_turns_is_no_start(self):
+        result = self.expect(3, "run", "moebius", "--formats", "none", "--out", "run", "--set", "ribbon.half_twists=3",
+                             "--set", "solver={method: two-stage, duration: 0.01}")
+        self.assertIn("linking number", result.stderr)
 
     def test_keys_of_the_other_method_are_refused(self):
         for setting in ("solver.time_step=0.01", "initial.shape=coil", "solver.damping={normal: 1}"):
@@ -72,6 +86,8 @@ class Motion(ProgramTest):
         self.expect_refused("check", "strip.yaml", "--set", "clamps.0.release=1", says="release")
         self.expect_refused("check", "swing", "--set", "initial.shape=coil", says="radius")
         self.expect_refused("check", "swing", "--set", "initial={shape: straight, radius: 1}", says="coil")
+        self.expect_refused("check", "swing", "--set", "initial={shape: coil, radius: 1, slope: 2}", says="meet")
+        self.expect_refused("check", "swing", "--set", "solver={method: two-stage, form: printed, minimiser: newton}", says="lbfgs")
         self.expect_refused("check", "swing", "--set", "solver.damping={normal: 1, factor_normal: 0.9}", says="damping")
 
 

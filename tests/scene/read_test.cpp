@@ -72,7 +72,7 @@ TEST(ReadScene, AspectAndWidthReplaceEachOtherInOverrides) {
 TEST(ReadScene, SpacingClosureAndOptions) {
   const Scene scene = read(R"(
 ribbon: {length: 1, width: 0.1, segments: 3, spacing: [1, 2, 1], closure: loop, half_twists: -1}
-solver: {energy: truncated, taylor_order: 7, strain: printed, path: twist, duration: 3, steps: 12, tolerance: 1e-9,
+solver: {energy: truncated, taylor_order: 7, strain: printed, path: twist, duration: 3, tolerance: 1e-9,
          max_iterations: 99, barrier: 1e-3}
 output: {frames: 5, subdivision: 2, across: 4, formats: [obj]}
 )");
@@ -84,7 +84,6 @@ output: {frames: 5, subdivision: 2, across: 4, formats: [obj]}
   EXPECT_EQ(scene.solver.energy.strain, energy::StrainMeasure::printed);
   EXPECT_EQ(scene.solver.loop_path, LoopPath::twist);
   EXPECT_EQ(scene.solver.duration, 3);
-  EXPECT_EQ(scene.solver.steps, 12);
   EXPECT_EQ(scene.solver.tolerance, 1e-9);
   EXPECT_EQ(scene.solver.max_iterations, 99);
   EXPECT_EQ(scene.solver.barrier, 1e-3);

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "wunderlich/scene/build.hpp"
-#include "wunderlich/solver/two_stage/two_stage.hpp"
+#include "wunderlich/solver/two_stage/types.hpp"
 
 namespace wunderlich::scene {
 
@@ -88,11 +90,21 @@ two_stage::Options two_stage_of(const Cell& cell, const energy::Model& model) {
     options.opt.minimiser = chosen<two_stage::Minimiser>(
         child(cell, "minimiser"), {{"newton", two_stage::Minimiser::newton}, {"lbfgs", two_stage::Minimiser::lbfgs}});
   }
+  if (options.opt.minimiser == two_stage::Minimiser::newton) {
+    const std::string problem = "has no effect with `minimiser: newton`, which holds the constraints itself";
+    if (options.opt.central_rate) fail(child(cell, "minimiser"), "`form: printed` needs lbfgs");
+    if (options.opt.projection == two_stage::Projection::gauss_seidel) fail(child(cell, "projection"), problem);
+    if (given("step_size")) fail(child(cell, "step_size"), problem);
+  }
   if (given("step_size")) options.opt.step_size = number(child(cell, "step_size"));
   if (given("substeps")) options.substeps = boolean(child(cell, "substeps"));
   if (given("weight_scale")) options.ode.weight_scale = number(child(cell, "weight_scale"));
-  options.inertia_scale = number(child(cell, "torsional_inertia"));
-  if (options.inertia_scale > 0) {
+  if (given("torsional_inertia")) {
+    options.inertia_scale = number(child(cell, "torsional_inertia"));
+    options.inertia =
+        options.inertia_scale > 0 ? two_stage::TorsionalInertia::physical : two_stage::TorsionalInertia::off;
+  }
+  if (given("inertia_form") && options.inertia != two_stage::TorsionalInertia::off) {
     options.inertia = chosen<two_stage::TorsionalInertia>(
         child(cell, "inertia_form"),
         {{"physical", two_stage::TorsionalInertia::physical}, {"printed", two_stage::TorsionalInertia::printed}});
@@ -131,6 +143,9 @@ SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon,
   if (options.method == Method::two_stage) {
     options.two_stage = two_stage_of(cell, options.energy);
     options.energy = options.two_stage.model;
+    if (ribbon.closure == geometry::Closure::loop && ribbon.segments < 5) {
+      fail(child(child(root, "ribbon"), "segments"), "a loop in motion needs at least 5");
+    }
     if (options.duration / options.time_step > 1e8) fail(child(cell, "time_step"), "makes more than 1e8 steps");
   }
   return options;
@@ -161,6 +176,15 @@ InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon)
   if (initial.shape == InitialShape::coil) {
     initial.radius = number(child(cell, "radius"));
     initial.slope = number(child(cell, "slope"));
+    const double least = ribbon.spacing.empty() ? 1.0 : *std::min_element(ribbon.spacing.begin(), ribbon.spacing.end());
+    const double sum =
+        ribbon.spacing.empty() ? ribbon.segments : std::accumulate(ribbon.spacing.begin(), ribbon.spacing.end(), 0.0);
+    const double most = 2 * ribbon.length * least / sum / ribbon.width;
+    if (!ribbon.free_rulings && std::abs(initial.slope) >= most) {
+      fail(child(cell, "slope"), fmt::format("makes rulings meet next to the square ends; below {:g} in size, or with "
+                                             "fewer segments, or with `ribbon.free_rulings`",
+                                             most));
+    }
   }
   initial.velocity = vector(child(cell, "velocity"));
   initial.spin = vector(child(cell, "spin"));

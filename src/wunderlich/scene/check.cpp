@@ -13,17 +13,9 @@ namespace {
 
 /// Keys and choices of the published scene format that this version cannot do; they are no typing errors.
 const std::vector<std::string> later_keys = {
-    "ribbons",
-    "obstacles",
-    "contact",
-    "solver.time_step",
-    "solver.stop_at_rest",
-    "solver.integrator",
-    "solver.kinetic_energy",
-    "solver.projection",
-    "solver.damping",
+    "ribbons", "obstacles", "contact", "solver.integrator", "solver.kinetic_energy",
 };
-const std::vector<std::string> later_methods = {"implicit", "two-stage"};
+const std::vector<std::string> later_methods = {"implicit"};
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();

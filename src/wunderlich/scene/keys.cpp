@@ -214,7 +214,8 @@ const std::vector<Key> table = {
      "",
      {"straight", "coil", "closed", "equilibrium"},
      "`straight`: undeformed. `coil`: constant curvature and ruling slope. `closed`: a loop just closed, not yet at "
-     "rest. `equilibrium`: at rest under the supports and loads of time 0. Default: `straight`, for loops "
+     "rest. `equilibrium`: at rest under the supports and loads of time 0 (of a free strip: under none). Default: "
+     "`straight`, for loops "
      "`equilibrium`."},
     {"initial.radius",
      Type::number,
@@ -321,9 +322,10 @@ const std::vector<Key> table = {
      "",
      0,
      1,
-     "0",
+     "",
      {},
-     "Two-stage: Gamma, share of the inertia of turning about the centerline that is kept; 0: none."},
+     "Two-stage: Gamma, share of the inertia of turning about the centerline that is kept; 0: none. Default 1; printed "
+     "0."},
     {"solver.inertia_form",
      Type::choice,
      "",
@@ -342,7 +344,8 @@ const std::vector<Key> table = {
      1,
      "",
      {},
-     "Instead of the rates, the paper's factor mu_t on the velocity along the tangent, once a step."},
+     "Instead of the rates, the paper's factor mu_t on the velocity along the tangent, once a substep. Where only one "
+     "of the two factors is given the other is the paper's: 0.85 along, 0.98 across."},
     {"solver.damping.factor_normal", Type::number, "", 0, 1, "", {}, "The same across it, mu_nt."},
     {"solver.steps", Type::integer, "", 0, 1e6, "0", {}, "Load steps of the path; 0: as few as it takes."},
     {"solver.path",

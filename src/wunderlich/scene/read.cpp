@@ -70,7 +70,7 @@ double last_key_time(const constraint::Surroundings& surroundings) {
 Scene read_scene_text(const std::string& text, const std::string& source, const std::vector<std::string>& overrides) {
   Value document = parse_document(text, shown(source, longest_path));
   Scene scene;
-  scene.written = to_yaml(document);
+  if (document.kind == Value::Kind::map) scene.written = to_yaml(document);
   if (!overrides.empty() && document.kind == Value::Kind::map) {
     for (const std::string& assignment : overrides) apply_override(document, assignment);
   }

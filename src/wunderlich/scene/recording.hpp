@@ -8,6 +8,7 @@
 #include "wunderlich/base/summary.hpp"
 #include "wunderlich/geometry/ribbon.hpp"
 #include "wunderlich/scene/run.hpp"
+#include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
 
@@ -38,6 +39,10 @@ Summary summary_of(const Scene& scene, const geometry::Ribbon& ribbon, const Rec
 
 /// V l/(D w).
 double normalized(const geometry::Ribbon& ribbon, double elastic);
+
+/// Why a loop that its path has closed is not the one that was asked for; empty if it is. A closed band keeps its
+/// linking number unless it passes through itself, which nothing here prevents.
+std::string lost_turns(const solver::PathProblem& path, const solver::PathState& state, const geometry::State& shape);
 
 /// Runs of one method each; see run().
 RunResult run_path(const Scene& scene, const Observer& observer, const Progress* resume);

@@ -19,8 +19,9 @@ namespace two_stage = solver::two_stage;
 
 namespace {
 
-constexpr int kMaxHalvings = 8;    // of a step that fails
-constexpr int kRestingSteps = 20;  // below the speed of rest, before a motion is over
+constexpr int kMaxHalvings = 8;        // of a step that fails
+constexpr double kManySubsteps = 100;  // in a step, of which a user should know
+constexpr int kRestingSteps = 20;      // below the speed of rest, before a motion is over
 
 /// The counters of a run, beside the solver's own state.
 struct Counters {
@@ -107,6 +108,7 @@ struct Motion {
     stable_step = report.stable_step;
     if (report.accepted) {
       state.shape.time = t1;
+      release();
       iterations += report.iterations;
       counters.taken += 1;
       counters.substeps += report.substeps;
@@ -119,8 +121,33 @@ struct Motion {
     return advance(t0, middle, halvings - 1, iterations) && advance(middle, t1, halvings - 1, iterations);
   }
 
+  /// Up to t1, with a stop wherever a support lets go.
+  bool advance_to(double t1, int& iterations) {
+    while (state.shape.time < t1) {
+      const double t0 = state.shape.time;
+      double next = t1;
+      for (const constraint::Support& support : scene.surroundings.supports) {
+        if (support.release > t0 * (1 + 1e-9) && support.release < next * (1 - 1e-9)) next = support.release;
+      }
+      if (!advance(t0, next, kMaxHalvings, iterations)) return false;
+    }
+    return true;
+  }
+
+  /// When the last thing that the scene imposes has happened.
+  double last_event() const {
+    double last = 0;
+    for (const constraint::Support& support : scene.surroundings.supports) {
+      last = std::max(last, end_time(support.motion));
+      if (std::isfinite(support.release)) last = std::max(last, support.release);
+    }
+    for (const constraint::Load& load : scene.surroundings.loads) last = std::max(last, load.keys.back().time);
+    return last;
+  }
+
   /// Slower than a wave of bending would cross 1e-5 of the strip in the time it takes along the strip.
   bool resting() const {
+    if (state.shape.time < last_event()) return false;
     double fastest = 0;
     for (const Vec3& v : state.shape.r_dot) fastest = std::max(fastest, v.norm());
     return fastest < 1e-5 * std::sqrt(ribbon.bending_stiffness / ribbon.area_density) / ribbon.length;
@@ -128,13 +155,13 @@ struct Motion {
 
   Outcome go(const Observer& observer) {
     const long steps = step_count();
-    const long stride = std::max(1L, (steps + scene.output.frames - 1) / scene.output.frames);
+    const long most = std::max(1, scene.output.frames - 1);  // beside the start
+    const long stride = std::max(1L, (steps + most - 1) / most);
     while (static_cast<long>(counters.step) < steps) {
       const auto step = static_cast<long>(counters.step) + 1;
-      release();
       const Stopwatch watch;
       int iterations = 0;
-      if (!advance(time_of(step - 1), time_of(step), kMaxHalvings, iterations)) return Outcome::not_converged;
+      if (!advance_to(time_of(step), iterations)) return Outcome::not_converged;
       const double us = 1e6 * watch.seconds();
       recording.timing.wall_seconds += 1e-6 * us;
       recording.step_us.push_back(us);
@@ -182,7 +209,7 @@ void add_warnings(const Motion& motion, Summary& summary) {
     summary.warnings.push_back("the step of " + text_of(motion.scene.solver.time_step) +
                                " s is beyond the stability bound of " + text_of(motion.stable_step) +
                                " s: what looks like motion may be instability");
-  } else if (motion.counters.substeps > motion.counters.taken) {
+  } else if (motion.counters.substeps > kManySubsteps * motion.counters.taken) {
     summary.warnings.push_back("each step was divided into " +
                                text_of(motion.counters.substeps / motion.counters.taken) +
                                " (in the mean): the stability bound is " + text_of(motion.stable_step) + " s");

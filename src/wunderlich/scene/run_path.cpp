@@ -118,7 +118,8 @@ struct Run {
   }
 };
 
-/// A closed band keeps its linking number unless it passes through itself, which nothing here prevents.
+}  // namespace
+
 std::string lost_turns(const PathProblem& path, const PathState& state, const State& shape) {
   if (!path.ribbon.is_loop() || solver::is_planar(path)) return "";
   const double wanted = 0.5 * path.ribbon.half_twists;
@@ -127,8 +128,6 @@ std::string lost_turns(const PathProblem& path, const PathState& state, const St
   return "the band closed with linking number " + std::to_string(link) + " instead of " + std::to_string(wanted) +
          ": it passed through itself on the way (contact is not modelled)";
 }
-
-}  // namespace
 
 RunResult run_path(const Scene& scene, const Observer& observer, const Progress* resume) {
   Run run{scene, path_of(scene), {}, {}, {}, {}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "wunderlich/geometry/chain.hpp"
+#include "wunderlich/scene/recording.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
@@ -27,6 +28,7 @@ constraint::Load growing(int node, constraint::LoadFrame frame, const Vec3& forc
 }
 
 /// What the surroundings are at time 0, reached from the undeformed strip: supports move there, loads and weight grow.
+/// Without supports there are none of them.
 constraint::Surroundings at_start(const constraint::Surroundings& surroundings, const Ribbon& ribbon) {
   const State straight = geometry::straight_state(ribbon);
   constraint::Surroundings out = surroundings;
@@ -36,11 +38,15 @@ constraint::Surroundings at_start(const constraint::Surroundings& surroundings, 
     support.motion.keys = {{0, undeformed_pose(support, ribbon, straight), 0}, goal};
     if (ribbon.is_loop()) support.motion.keys = {goal};
   }
+  out.gravity.setZero();
+  if (surroundings.supports.empty()) {  // nothing would hold it
+    out.loads.clear();
+    return out;
+  }
   for (constraint::Load& load : out.loads) {
     const constraint::LoadKey key = constraint::load_at(load, 0);
     load = growing(load.node, load.frame, key.force, key.torque);
   }
-  out.gravity.setZero();
   for (int i = 0; i <= ribbon.segments && !surroundings.gravity.isZero(0); ++i) {
     const Vec3 weight = ribbon.node_mass[static_cast<std::size_t>(i)] * surroundings.gravity;
     out.loads.push_back(growing(i, constraint::LoadFrame::space, weight, Vec3::Zero()));
@@ -64,7 +70,9 @@ Start along_path(const Scene& scene, const Ribbon& ribbon) {
     failures = step.accepted ? 0 : failures + 1;
     if (step.exhausted || failures > kMaxFailures) return {{}, "its start was not reached: " + step.failure};
   }
-  return {geometry::state_of(solver::ribbon_of(path, state), state.chain, 0), ""};
+  Start start{geometry::state_of(solver::ribbon_of(path, state), state.chain, 0), ""};
+  start.failure = lost_turns(path, state, start.shape);
+  return start;
 }
 
 /// Moves the whole strip so that its first support is where it is held at time 0.

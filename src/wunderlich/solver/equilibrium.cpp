@@ -21,6 +21,7 @@ constexpr int kProximalPasses = 3;    // minimisations with a fictitious mass a 
 constexpr double kProximity = 1e4;    // that mass, in units of D w / l^4 per length
 constexpr int kSettleRounds = 30;
 constexpr double kSettleTime = 0.05;    // on the clock of the path, for the film
+constexpr int kMaxSteps = 5000;         // of a path whose orientation constraints do not come to rest
 constexpr double kTurnedAtRest = 1e-9;  // of a tangent between two solutions at rest [rad]
 
 /// Between two held places flat strips buckle and snap: go there with a fictitious mass, in small steps.
@@ -104,7 +105,12 @@ PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace&
   const double end = path.options.duration;
   step.accepted = solve_at(path, state, end, {}, work, step);
   if (step.accepted) {
-    if (renew_frames(path, state) < kTurnedAtRest) enter(path, Phase::done, state);
+    if (renew_frames(path, state) < kTurnedAtRest) {
+      enter(path, Phase::done, state);
+    } else if (state.steps > kMaxSteps) {
+      step.exhausted = true;
+      step.failure = "settle: the frames that orientation constraints are carried along with do not come to rest";
+    }
     state.clock += kSettleTime;
     return step;
   }

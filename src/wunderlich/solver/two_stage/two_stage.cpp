@@ -158,23 +158,6 @@ State start(const Ribbon& ribbon, const geometry::State& shape) {
   return state;
 }
 
-Options printed_options() {
-  Options options;
-  options.model = {energy::Elastic::truncated, 5, energy::StrainMeasure::printed};
-  options.ode.weight = ParallelWeight::state;
-  options.ode.damping = Damping::per_step;
-  options.opt.minimiser = Minimiser::lbfgs;
-  options.opt.projection = Projection::gauss_seidel;
-  options.opt.barrier = 0;
-  options.opt.proximal = 0;
-  options.opt.central_rate = true;
-  options.opt.step_size = 0.05;
-  options.opt.max_iterations = 30;
-  options.inertia = TorsionalInertia::off;
-  options.substeps = false;
-  return options;
-}
-
 double rest_parallel_weight(const Ribbon& ribbon, double weight_scale) {
   // Second derivatives of V at the flat strip: D w/h of a hinge in kappa h and 2 D w/h in tau h, for both its segments;
   // those in a quaternion are 4 times those in its rotation vector. V does not depend on eta there.
