@@ -155,7 +155,7 @@ class Sweep {
   void forward(ChainStep& step) const {
     step.base = -(base_inverse_ * base_load(step));
     Four v = four(step.base.head<3>()), theta = four(step.base.tail<3>(), 1);
-    double previous0 = 0, previous1 = 0;
+    Four previous = all(0);  // -(u0, u0, u1, u1) of the joint before
     const std::size_t count = system_.links.size();
     Columns<Q> weight(quads_);  // its first row: the multipliers
     for (std::size_t k = 0; k < system_.rows.size(); ++k)
@@ -169,16 +169,13 @@ class Sweep {
         sum0 += solved[e] * weight.row(0)[e];
         sum1 += solved[columns_.quads() + e] * weight.row(0)[e];
       }
-      const double u0 =
-          -((sum0[0] + sum0[1]) + (sum0[2] + sum0[3]) + gain.previous[0] * previous0 + gain.previous[1] * previous1);
-      const double u1 =
-          -((sum1[0] + sum1[1]) + (sum1[2] + sum1[3]) + gain.previous[2] * previous0 + gain.previous[3] * previous1);
+      const Four halves = pair_sums(sum0, sum1) - gain.previous * previous;
+      const Four minus_u = halves + swap_halves(halves);  // (u0, u1, u0, u1), negative
       step.v[i] = first_three(v);
-      step.u[i] = {u0, u1};
-      theta += all(u0) * four(link.axes.col(0)) + all(u1) * four(link.axes.col(1));
+      step.u[i] = {-minus_u[0], -minus_u[1]};
+      theta -= double_even(minus_u) * four(link.axes.col(0)) + double_odd(minus_u) * four(link.axes.col(1));
       if (i + 1 < count) v += cross(theta, four(link.span));
-      previous0 = u0;
-      previous1 = u1;
+      previous = double_ends(minus_u);
     }
   }
 
@@ -241,7 +238,7 @@ class Sweep {
     const double c10 = before->hess_ab(1, 0), c11 = before->hess_ab(1, 1);
     const double p00 = i00 * c00 + i01 * c01, p01 = i00 * c10 + i01 * c11;
     const double p10 = i01 * c00 + i11 * c01, p11 = i01 * c10 + i11 * c11;
-    gain.previous = Four{p00, p01, p10, p11};
+    gain.previous = Four{p00, p10, p01, p11};
     value.z00 = before->hess_aa(0, 0) - c00 * p00 - c01 * p10;
     value.z01 = before->hess_aa(0, 1) - c00 * p01 - c01 * p11;
     value.z11 = before->hess_aa(1, 1) - c10 * p01 - c11 * p11;

@@ -74,7 +74,7 @@ struct ChainSystem {
 /// What a joint keeps from the backward sweep: u_i = -(v . v_i + theta . theta_{i-1} + previous u_{i-1} + ...).
 struct ChainGain {
   Four v[2], theta[2];  ///< by coordinate; the fourth lane of theta belongs to the gradient
-  Four previous;        ///< 2 x 2, by rows
+  Four previous;        ///< 2 x 2, by columns
 };
 
 struct ChainStep {

@@ -29,6 +29,16 @@ inline Four lane_sums(Four a, Four b, Four c) {
   return __builtin_shufflevector(ab, cc, 0, 1, 4, 5) + __builtin_shufflevector(ab, cc, 2, 3, 6, 7);
 }
 
+/// (a0 + a1, b0 + b1, a2 + a3, b2 + b3): half way to the sums of the lanes of a and b.
+inline Four pair_sums(Four a, Four b) {
+  return __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+}
+
+/// (x, x, z, z), (y, y, w, w) and (x, x, w, w).
+inline Four double_even(Four a) { return __builtin_shufflevector(a, a, 0, 0, 2, 2); }
+inline Four double_odd(Four a) { return __builtin_shufflevector(a, a, 1, 1, 3, 3); }
+inline Four double_ends(Four a) { return __builtin_shufflevector(a, a, 0, 0, 3, 3); }
+
 /// Turns the rows a, b, c into columns; their fourth lanes are lost, those of the results are anything finite.
 inline void transpose3(Four& a, Four& b, Four& c) {
   const Four low = __builtin_shufflevector(a, b, 0, 4, 2, 6), high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
@@ -74,6 +84,17 @@ inline Four lane_sums(Four a, Four b, Four c) {
   const Two pq = __builtin_shufflevector(p, q, 0, 2) + __builtin_shufflevector(p, q, 1, 3);
   return {pq, __builtin_shufflevector(r, r, 0, 0) + __builtin_shufflevector(r, r, 1, 1)};
 }
+
+inline Four pair_sums(Four a, Four b) {
+  return {__builtin_shufflevector(a.low, b.low, 0, 2) + __builtin_shufflevector(a.low, b.low, 1, 3),
+          __builtin_shufflevector(a.high, b.high, 0, 2) + __builtin_shufflevector(a.high, b.high, 1, 3)};
+}
+
+inline Two twice_first(Two a) { return __builtin_shufflevector(a, a, 0, 0); }
+inline Two twice_second(Two a) { return __builtin_shufflevector(a, a, 1, 1); }
+inline Four double_even(Four a) { return {twice_first(a.low), twice_first(a.high)}; }
+inline Four double_odd(Four a) { return {twice_second(a.low), twice_second(a.high)}; }
+inline Four double_ends(Four a) { return {twice_first(a.low), twice_second(a.high)}; }
 
 inline void transpose3(Four& a, Four& b, Four& c) {
   const Four x{__builtin_shufflevector(a.low, b.low, 0, 2), __builtin_shufflevector(c.low, c.low, 0, 0)};
