@@ -13,7 +13,10 @@ target_compile_options(wunderlich_options INTERFACE
 if(WUNDERLICH_NATIVE)
   # Vectors of eight are of no use here. Eigen's own vector code stays out: at AVX's width g++ 12 takes parts of it for
   # uninitialised or out of bounds, and what runs often is in math/four.hpp.
-  target_compile_options(wunderlich_options INTERFACE -march=native -mno-avx512f)
+  target_compile_options(wunderlich_options INTERFACE -march=native)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(wunderlich_options INTERFACE -mno-avx512f)
+  endif()
   target_compile_definitions(wunderlich_options INTERFACE EIGEN_DONT_VECTORIZE)
 endif()
 # Vectors of four are passed to inline functions only; what their calling convention would be does not matter.
