@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/constraint/errors.hpp"
@@ -22,6 +24,18 @@ namespace {
 constexpr int kMaxHalvings = 8;        // of a step that fails
 constexpr double kManySubsteps = 100;  // in a step, of which a user should know
 constexpr int kRestingSteps = 20;      // below the speed of rest, before a motion is over
+
+/// Which ends of an open strip have a frame of their own: those that a clamp holds at this time.
+std::array<bool, 2> clamped_at(const Scene& scene, double time) {
+  std::array<bool, 2> clamped{};
+  if (scene.ribbon.closure == geometry::Closure::loop) return clamped;
+  for (const constraint::Support& support : scene.surroundings.supports) {
+    const bool at_end = support.node == 0 || support.node == scene.ribbon.segments;
+    const bool clamps = at_end && support.segment < 0 && support.orientation == constraint::Orientation::full;
+    if (clamps && holds(support, time)) clamped[support.node == 0 ? 0 : 1] = true;
+  }
+  return clamped;
+}
 
 /// The counters of a run, beside the solver's own state.
 struct Counters {
@@ -91,9 +105,8 @@ struct Motion {
 
   /// Clamps that let go at this time leave their end without a frame of its own.
   void release() {
-    Ribbon now = motion_ribbon(scene, state.shape.time);
-    if (now.clamped == ribbon.clamped) return;
-    ribbon = std::move(now);
+    if (clamped_at(scene, state.shape.time) == ribbon.clamped) return;
+    ribbon = motion_ribbon(scene, state.shape.time);
     if (!ribbon.clamped[0]) state.shape.end_frame[0] = state.shape.q.front();
     if (!ribbon.clamped[1]) state.shape.end_frame[1] = state.shape.q.back();
   }
@@ -220,14 +233,7 @@ void add_warnings(const Motion& motion, Summary& summary) {
 
 Ribbon motion_ribbon(const Scene& scene, double time) {
   geometry::RibbonSpec spec = scene.ribbon;
-  spec.clamped = {false, false};
-  if (spec.closure == geometry::Closure::open) {
-    for (const constraint::Support& support : scene.surroundings.supports) {
-      const bool at_end = support.node == 0 || support.node == spec.segments;
-      const bool clamps = at_end && support.segment < 0 && support.orientation == constraint::Orientation::full;
-      if (clamps && holds(support, time)) spec.clamped[support.node == 0 ? 0 : 1] = true;
-    }
-  }
+  spec.clamped = clamped_at(scene, time);
   return geometry::make_ribbon(spec);
 }
 
