@@ -15,6 +15,7 @@ SIZE = (1200, 750)
 # Keys that the page understands, from its usual view, and what the program is asked beside the scene's name.
 MORE = {
     "moebius": {"set": ["ribbon.segments=100"]},
+    "coil": {"set": ["solver.duration=2"]},  # where it lies loosened
     # Motions are shown where they are busy, not where they end.
     "belt-release-stiff": {"set": ["solver.duration=0.3"]},
     "belt-release-soft": {"set": ["solver.duration=0.3"]},

@@ -1,6 +1,7 @@
 """Motions: constraints at every recorded step, energy, repetition, interruption, and keys that make no sense."""
 
 import csv
+import math
 import re
 import signal
 import subprocess
@@ -10,6 +11,9 @@ from program import PROGRAM, SCENES, ProgramTest, main
 
 # A light strip let go from straight; a second of it is done in a second or two.
 SWING = ["swing", "--set", "ribbon.segments=16", "--set", "solver.duration=0.5", "--formats", "none"]
+
+LOOP = ["moebius", "--set", "solver={method: two-stage, duration: 8, time_step: 0.02}", "--set",
+        "initial.shape=closed", "--set", "ribbon.segments=48", "--formats", "none"]
 
 
 class Motion(ProgramTest):
@@ -45,8 +49,8 @@ class Motion(ProgramTest):
         self.assertEqual(self.without_clock("one"), self.without_clock("two"))
         self.assertEqual((self.folder / "one/centerline.csv").read_bytes(), (self.folder / "two/centerline.csv").read_bytes())
 
-    def test_interrupted_motion_goes_on_bit_for_bit(self):
-        arguments = [*SWING, "--set", "ribbon.segments=40"]
+    def interrupt(self, arguments):
+        """Stops a run after a while; tries again with more or less time until it was stopped on its way."""
         for seconds in (0.6, 0.3, 0.15, 1.5):
             process = subprocess.Popen([PROGRAM, "run", *arguments, "--out", "run"], cwd=self.folder,
                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
@@ -54,12 +58,39 @@ class Motion(ProgramTest):
             process.send_signal(signal.SIGINT)
             _, message = process.communicate(timeout=120)
             if process.returncode == 130:
-                break
-        self.assertEqual(process.returncode, 130, message)
-        self.expect(0, "run", "swing", "--out", "run", "--formats", "none", "--resume")
-        self.expect(0, "run", *arguments, "--out", "whole")
-        self.assertEqual((self.folder / "run/centerline.csv").read_bytes(), (self.folder / "whole/centerline.csv").read_bytes())
-        self.assertEqual(self.without_clock("run"), self.without_clock("whole"))
+                return
+        self.fail(f"never stopped on its way: {message}")
+
+    def test_interrupted_motion_goes_on_bit_for_bit(self):
+        for arguments in ([*SWING, "--set", "ribbon.segments=40"], LOOP):
+            with self.subTest(scene=arguments[0]):
+                self.interrupt(arguments)
+                self.expect(0, "run", arguments[0], "--out", "run", "--formats", "none", "--resume")
+                self.expect(0, "run", *arguments, "--out", "whole")
+                for name in ("run", "whole"):
+                    self.assertGreater(len(self.history(name)), 3)
+                self.assertEqual((self.folder / "run/centerline.csv").read_bytes(),
+                                 (self.folder / "whole/centerline.csv").read_bytes())
+                self.assertEqual(self.without_clock("run"), self.without_clock("whole"))
+
+    def turn_after(self, steps, inertia):
+        """By what the end frame of the free strip has turned since the start [rad]."""
+        step = 2e-4
+        frames = []
+        for duration, gamma in ((1e-3 * step, 1), (steps * step, inertia)):
+            self.expect(0, "run", "free-flight", "--out", "run", "--formats", "none", "--set", f"solver.time_step={step}",
+                        "--set", f"solver.duration={duration}", "--set", f"solver.torsional_inertia={gamma}")
+            with open(self.folder / "run/centerline.csv", encoding="utf-8") as file:
+                row = list(csv.DictReader(file))[-2]
+            frames.append([float(row[f"d{axis}{c}"]) for axis in (1, 2, 3) for c in "xyz"])
+        return math.acos(min(1, (sum(a * b for a, b in zip(*frames)) - 1) / 2))
+
+    def test_a_free_strip_untwists_with_its_inertia_and_at_once_without(self):
+        turns = {inertia: [self.turn_after(steps, inertia) for steps in (1, 2, 4)] for inertia in (1, 0)}
+        self.assertGreater(turns[0][0], 50 * turns[1][0])
+        for early, late in zip(turns[1], turns[1][1:]):  # from rest the angle grows with the square of time
+            self.assertGreater(late, 2.8 * early)
+        self.assertLess(turns[0][1], 1.5 * turns[0][0])  # without inertia the jump is over after the first step
 
     def test_a_step_beyond_the_stability_bound_is_said(self):
         beyond = ("solver.substeps=false", "solver.time_step=5e-4", "solver.duration=0.01")  # the bound is 4.1e-4

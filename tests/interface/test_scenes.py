@@ -51,6 +51,25 @@ class ShippedScenes(ProgramTest):
         self.assertEqual(energies, sorted(energies))
         self.assertAlmostEqual(energies[2] / 59.677204766524085, 1, delta=1e-3)
 
+    def test_a_strip_twists_under_any_pull(self):
+        # Strong reactions beside small residuals: the merit function must still let Newton's steps pass.
+        pull = "[{{at: end, keyframes: [{{time: 0, force: [1, 0, 0]}}, {{time: 1, force: [{}, 0, 0]}}]}}]"
+        for segments in (35, 50, 70):
+            for force in (300, 400, 600, "250*pi"):
+                with self.subTest(segments=segments, force=force):
+                    self.summary("twist-2pi", f"ribbon.segments={segments}", "forces=" + pull.format(force))
+
+    def test_a_full_turn_under_tension_stays_in_the_strip(self):
+        for segments in (35, 70, 100):
+            self.assertAlmostEqual(self.summary("twist-2pi", f"ribbon.segments={segments}")["topology"]["link"], 1, delta=0.02)
+
+    def test_a_loosened_strip_coils_and_stays_coiled(self):
+        twisted, loose, pulled = (self.summary("coil", f"solver.duration={t}") for t in (1, 2, 3))
+        self.assertAlmostEqual(twisted["topology"]["link"], 1, delta=0.02)
+        for coiled in (loose, pulled):  # a plane coil has no twist; nor has it link, as its crossing counts neither way
+            self.assertLess(abs(coiled["topology"]["twist"]), 1e-6)
+        self.assertLess(loose["energy"]["elastic"], 0.3 * twisted["energy"]["elastic"])
+
     def test_an_upright_strip_past_its_critical_height_is_no_stable_flat_state(self):
         # A heavy column buckles at rho g l^3 / D = 7.837 (Greenhill 1881).
         standing = ("clamps.0.tangent=[0,0,1]", "clamps.0.normal=[1,0,0]")

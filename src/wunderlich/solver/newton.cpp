@@ -28,16 +28,18 @@ struct Iterate {
   const Ribbon& ribbon;
   const ChainProblem& problem;
   NewtonWorkspace& work;
+  double emphasis = 1;  ///< of the rows' penalties in the merit
   double merit_of(const Chain& chain, const Kinematics& k, std::vector<double>& residuals) const;
   double slope() const;
+  void weigh_rows();
 };
 
-/// Objective + new multipliers * rows + penalty/2 * rows^2: the Newton step is a descent direction of it.
+/// Objective + new multipliers * rows + emphasis penalty/2 * rows^2: the Newton step is a descent direction of it.
 double Iterate::merit_of(const Chain& chain, const Kinematics& k, std::vector<double>& residuals) const {
   constraint_residuals(ribbon, problem, chain, k, residuals);
   double merit = objective(ribbon, problem, chain, k, work.kinematics).total();
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    merit += residuals[i] * (work.step.multiplier[i] + 0.5 * work.system.rows[i].penalty * residuals[i]);
+    merit += residuals[i] * (work.step.multiplier[i] + 0.5 * emphasis * work.system.rows[i].penalty * residuals[i]);
   }
   return merit;
 }
@@ -47,9 +49,19 @@ double Iterate::slope() const {
   for (std::size_t i = 0; i < work.step.u.size(); ++i) slope += work.sweep.gradient[i].dot(work.step.u[i]);
   for (std::size_t i = 0; i < work.system.rows.size(); ++i) {
     const auto& row = work.system.rows[i];
-    slope -= row.residual * (work.step.multiplier[i] - row.multiplier + row.penalty * row.residual);
+    slope -= row.residual * (work.step.multiplier[i] - row.multiplier + emphasis * row.penalty * row.residual);
   }
   return slope;
+}
+
+/// As much penalty as makes the step a descent: the Hessian on the constraints is positive, but under strong reactions
+/// the one with the system's penalties need not be. At least half of what the rows lose must show. @eq Nocedal2006:18.5
+void Iterate::weigh_rows() {
+  emphasis = 1;
+  double infeasibility = 0;
+  for (const auto& row : work.system.rows) infeasibility += row.penalty * row.residual * row.residual;
+  const double excess = slope() + 0.5 * infeasibility;
+  if (infeasibility > 0 && excess > 0) emphasis += excess / infeasibility;
 }
 
 /// Shortens the step to keep |x| < 1 and fold angles from jumping.
@@ -237,7 +249,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   Chain current = chain;
   multipliers.resize(row_count(problem), 0.0);
   std::vector<double> lambda = multipliers;
-  const Iterate at{ribbon, problem, work};
+  Iterate at{ribbon, problem, work};
   double shift = 0;
   geometry::forward_kinematics(ribbon, current, work.kinematics);
   const auto accept = [&] {
@@ -269,6 +281,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
                     work.step.multiplier.end());
       continue;
     }
+    at.weigh_rows();
     const double merit = at.merit_of(current, work.kinematics, work.residuals);
     const double slope = at.slope();
     const Stationary kind = classify(ribbon, options, shift, slope, merit, work, report);
