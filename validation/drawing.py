@@ -1,12 +1,13 @@
 """Figures by matplotlib. Import it only where figures are wanted."""
 
+from math import cos, radians, sin
 from pathlib import Path
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend has to be chosen first)
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
 
 plt.rcParams.update({
     "font.size": 9, "axes.grid": True, "grid.color": "#e6e6e6", "axes.spines.top": False, "axes.spines.right": False,
@@ -25,30 +26,38 @@ def rainbow(count):
     return [plt.cm.rainbow(1 - i / max(1, count - 1)) for i in range(count)]
 
 
-def ribbons_3d(figure, place, surfaces, colours, view, title="", zoom=1.0):
-    """Surfaces over each other in one 3D view; `view` is (elevation, azimuth) in degrees. Axes have one scale."""
-    axes = figure.add_subplot(place, projection="3d")
-    for surface, colour in zip(surfaces, colours):
-        quads = strips(surface)
-        axes.add_collection3d(Poly3DCollection(quads, facecolors=[shaded(colour, quad) for quad in quads], linewidths=0))
-    points = [point for surface in surfaces for point in surface.points]
-    low = [min(p[k] for p in points) for k in range(3)]
-    high = [max(p[k] for p in points) for k in range(3)]
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect([max(1e-3, h - l) for l, h in zip(low, high)], zoom=zoom)
-    axes.view_init(*view)
+def ribbons(axes, surfaces, colours, view, title="", apart=0.0):
+    """Surfaces over each other as seen from `view`, (elevation, azimuth) in degrees, each further right by `apart` [m]."""
+    up, round_ = (radians(angle) for angle in view)
+    right = (-sin(round_), cos(round_), 0.0)
+    above = (-sin(up) * cos(round_), -sin(up) * sin(round_), cos(up))
+    nearer = (cos(up) * cos(round_), cos(up) * sin(round_), sin(up))
+    seen = []  # (nearness, polygon, colour)
+    for place, (surface, colour) in enumerate(zip(surfaces, colours)):
+        for quad in strips(surface):
+            polygon = [(dot(point, right) + place * apart, dot(point, above)) for point in quad]
+            seen.append((sum(dot(point, nearer) for point in quad), polygon, shaded(colour, quad)))
+    seen.sort(key=lambda item: item[0])
+    tones = [tone for _, _, tone in seen]
+    axes.add_collection(PolyCollection([polygon for _, polygon, _ in seen], facecolors=tones, edgecolors=tones,
+                                       linewidths=0.3))
+    axes.autoscale_view()
+    axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(title, fontsize=9)
-    return axes
+    axes.set_title(title)
 
 
 def shaded(colour, quad):
     """Brighter where the light falls square to the quad, the same from both sides."""
     (ax, ay, az), (bx, by, bz) = (subtract(quad[2], quad[0]), subtract(quad[3], quad[1]))
     normal = (ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
-    size = sum(x * x for x in normal) ** 0.5 or 1.0
-    light = abs(sum(n * d for n, d in zip(normal, (0.36, -0.48, 0.8)))) / size
+    size = dot(normal, normal) ** 0.5 or 1.0
+    light = abs(dot(normal, (0.36, -0.48, 0.8))) / size
     return [c * (0.45 + 0.55 * light) for c in matplotlib.colors.to_rgb(colour)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
 
 
 def subtract(a, b):
@@ -63,5 +72,5 @@ def strips(surface):
 
 def save(figure, path):
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=100)
+    figure.savefig(path, dpi=100, pil_kwargs={"optimize": True})
     plt.close(figure)

@@ -7,7 +7,8 @@ from common import at_least, at_most
 HERE = Path(__file__).resolve().parent
 
 # The band, on top of the shipped scene: just closed, then pulled at two opposite places, then left to settle.
-PULL = "{at: {u: %s}, keyframes: [{time: 0, force: [0, 0, 0]}, {time: 0.5, force: [%d, %d, %d]}, {time: 1, force: [0, 0, 0]}]}"
+PULL = ("{at: {u: %s}, keyframes: "
+        "[{time: 0, force: [0, 0, 0]}, {time: 0.5, force: [%d, %d, %d]}, {time: 1, force: [0, 0, 0]}]}")
 BAND = ("ribbon.aspect=5pi/4", "initial.shape=closed", "output.frames=400",
         "solver={method: two-stage, duration: 4, time_step: 0.01, damping: {normal: 2, tangent: 2}}",
         f"forces=[{PULL % ('pi/2', 9, 9, 9)}, {PULL % ('3pi/2', -9, -9, -9)}]")

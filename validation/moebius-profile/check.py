@@ -100,6 +100,5 @@ def draw(data, drawing, path):
                       markerfacecolor="none", label=label)
         axes.set(title=f"{name} [2π/l]", xlabel="u/l from the inflection")
     tau.legend(fontsize=7, loc="upper center")
-    place.remove()
-    drawing.ribbons_3d(figure, 133, [data["picture"]], ["#d9a441"], (50, -70), "at rest, n = 50", zoom=1.5)
+    drawing.ribbons(place, [data["picture"]], ["#d9a441"], (50, -70), "at rest, n = 50")
     drawing.save(figure, path)
