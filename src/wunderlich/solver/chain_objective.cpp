@@ -17,26 +17,44 @@ using geometry::Ribbon;
 using math::ChainLink;
 using math::ChainRow;
 using math::ChainSystem;
+using math::Four;
 
 namespace {
 
 double rigidity(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width; }
 
-/// e1 D l_s/w of one segment.
-double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem, std::size_t segment) {
-  return problem.barrier * ribbon.bending_stiffness * ribbon.rest_length[segment] / ribbon.width;
+/// Four links from `first` on: both ends of each, and what depends on the link alone. What is said of links beyond the
+/// last is finite and means nothing.
+struct FourLinks {
+  energy::LinkEnd<Four> a, b;
+  energy::LinkQuadrature<Four> rule;
+  Four slope;           ///< x = slope (eta_b - eta_a), w/(2 l)
+  Four x;               ///< ruling ratio
+  Four weight;          ///< D w l/2
+  Four barrier_weight;  ///< e1 D l/w
+};
+
+inline energy::LinkEnd<Four> link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain,
+                                      const geometry::Fold<Four>& fold, std::size_t first) {
+  const Four kappa = math::load(chain.kappa, first), eta = math::load(chain.eta, first);
+  const Four h = geometry::fold_lengths(ribbon, first);
+  return {{kappa, eta}, energy::bending(problem.model.strain, h, kappa, eta, fold)};
 }
 
-/// A node as an end of a link; the weight depends on the link.
-energy::LinkEnd link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                         std::size_t node) {
-  const double h = geometry::fold_length(ribbon, node), kappa = chain.kappa[node], eta = chain.eta[node];
-  return {kappa, eta, energy::bending(problem.model.strain, h, kappa, eta, k.fold[node]), 0};
-}
-
-/// Half the link belongs to each end's hinge, nothing where there is none.
-double end_weight(const Ribbon& ribbon, std::size_t link, std::size_t node) {
-  return geometry::fold_length(ribbon, node) > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
+inline FourLinks four_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                            std::size_t first) {
+  const Four length = math::load(ribbon.rest_length, first);
+  const auto& here = k.fold[first / 4];
+  const auto& next = k.fold[std::min(first / 4 + 1, k.fold.size() - 1)];
+  FourLinks links;
+  links.a = link_end(ribbon, problem, chain, here, first);
+  links.b = link_end(ribbon, problem, chain, geometry::moved_on(here, next), first + 1);
+  links.rule = energy::four_quadratures(ribbon, problem.model, first);
+  links.slope = 0.5 * ribbon.width / length;
+  links.x = links.slope * (links.b.at.eta - links.a.at.eta);
+  links.weight = 0.5 * rigidity(ribbon) * length;
+  links.barrier_weight = problem.barrier * ribbon.bending_stiffness / ribbon.width * length;
+  return links;
 }
 
 /// Turn of the frame `q` about its tangent against `reference` transported along the shortest rotation of the
@@ -150,26 +168,30 @@ void append_rows(const Ribbon& ribbon, const ChainProblem& problem, const Chain&
   }
 }
 
-void fill_joint(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t i, ChainLink& link) {
-  const double h = ribbon.hinge_length[i];
-  if (h == 0) {
-    link.axes.setZero();
-    link.axes_01.setZero();
-    link.axes_11.setZero();
-    return;
-  }
-  // Axes are given before the fold; carry them with the frame before it: q_{i-1} = q_i fold^-1.
-  const geometry::FoldDerivatives d = geometry::fold_derivatives(k.fold[i], h, chain.kappa[i], chain.eta[i]);
-  const Mat3 base = i > 0 ? Mat3() : Mat3(chain.base.frame.toRotationMatrix());
-  const Mat3& before = i > 0 ? k.frame[i - 1] : base;
-  const math::Four d1 = math::four(before.col(0)), d2 = math::four(before.col(1)), d3 = math::four(before.col(2));
-  const auto in_space = [&](const Vec3& v) -> Vec3 {
-    return math::first_three(math::all(v[0]) * d1 + math::all(v[1]) * d2 + math::all(v[2]) * d3);
+/// Joints of `count` nodes from `first` on.
+inline void fill_joints(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t first,
+                        std::size_t count, ChainLink* links) {
+  const auto d = geometry::fold_derivatives(k.fold[first / 4], geometry::fold_lengths(ribbon, first),
+                                            math::load(chain.kappa, first), math::load(chain.eta, first));
+  const auto fill = [&](const Mat3& before, int lane, ChainLink& link) {
+    const Four d1 = math::four(before.col(0)), d2 = math::four(before.col(1)), d3 = math::four(before.col(2));
+    const auto in_space = [&](const geometry::InFrame<Four>& v) -> Vec3 {
+      return math::first_three(math::all(v.x[lane]) * d1 + math::all(v.y[lane]) * d2 + math::all(v.z[lane]) * d3);
+    };
+    link.axes.col(0) = in_space(d.kappa);
+    link.axes.col(1) = in_space(d.eta);
+    link.axes_01 = in_space(d.kappa_eta);
+    link.axes_11 = in_space(d.eta_eta);
   };
-  link.axes.col(0) = in_space(d.kappa);
-  link.axes.col(1) = in_space(d.eta);
-  link.axes_01 = in_space(d.kappa_eta);
-  link.axes_11 = in_space(d.eta_eta);
+  // Axes are given before the fold; carry them with the frame before it.
+  if (first == 0) fill(chain.base.frame.toRotationMatrix(), 0, links[0]);
+  for (std::size_t j = first == 0 ? 1 : 0; j < count; ++j) fill(k.frame[first + j - 1], static_cast<int>(j), links[j]);
+}
+
+void still_joint(ChainLink& link) {
+  link.axes.setZero();
+  link.axes_01.setZero();
+  link.axes_11.setZero();
 }
 
 void fill_node(const Ribbon& ribbon, const ChainProblem& problem, const Kinematics& k, std::size_t i, ChainLink& link) {
@@ -178,21 +200,33 @@ void fill_node(const Ribbon& ribbon, const ChainProblem& problem, const Kinemati
   if (problem.proximity > 0) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
 }
 
-void fill_link(const Ribbon& ribbon, const ChainProblem& problem, std::size_t i, const energy::LinkEnd& a,
-               const energy::LinkEnd& b, ChainLink& link) {
-  const double slope = 0.5 * ribbon.width / ribbon.rest_length[i], x = slope * (b.eta - a.eta);
-  const double e1 = barrier_weight(ribbon, problem, i);
-  energy::WidthFactor barrier = energy::ruling_barrier(x);
-  barrier.value *= e1;
-  barrier.first *= e1;
-  barrier.second *= e1;
-  const energy::LinkEnergy e = energy::link_energy(energy::width_factor(problem.model, x), barrier, slope,
-                                                   energy::quadrature(ribbon, problem.model, i), a, b);
-  link.grad_a = e.grad_a;
-  link.grad_b = e.grad_b;
-  link.hess_aa = e.hess_aa;
-  link.hess_ab = e.hess_ab;
-  link.hess_bb = e.hess_bb;
+/// Energy derivatives of `count` links from `first` on.
+inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                       std::size_t first, std::size_t count, ChainLink* links) {
+  const FourLinks four = four_links(ribbon, problem, chain, k, first);
+  const energy::WidthFactor<Four> wall = energy::ruling_barrier(four.x);
+  // Nothing asks for values here, and a logarithm is dear.
+  const energy::WidthFactor<Four> barrier{math::all(0), four.barrier_weight * wall.first,
+                                          four.barrier_weight * wall.second};
+  const energy::LinkEnergy<Four> e = energy::link_energy(energy::width_factor(problem.model, four.x), barrier,
+                                                         four.slope, four.rule, four.weight, four.a, four.b);
+  const auto scatter = [&](Four p, Four q, Four r, Four s, const auto& take) {
+    math::transpose4(p, q, r, s);
+    const Four rows[] = {p, q, r, s};
+    for (std::size_t j = 0; j < count; ++j) take(links[j], rows[j]);
+  };
+  const auto &aa = e.hess_aa, &bb = e.hess_bb;
+  const auto& ab = e.hess_ab;
+  scatter(e.grad_a.kappa, e.grad_a.eta, e.grad_b.kappa, e.grad_b.eta, [](ChainLink& link, Four row) {
+    link.grad_a = {row[0], row[1]};
+    link.grad_b = {row[2], row[3]};
+  });
+  scatter(aa.kappa_kappa, aa.kappa_eta, aa.kappa_eta, aa.eta_eta,
+          [](ChainLink& link, Four row) { math::store(row, link.hess_aa.data()); });
+  scatter(ab.kappa_kappa, ab.eta_kappa, ab.kappa_eta, ab.eta_eta,
+          [](ChainLink& link, Four row) { math::store(row, link.hess_ab.data()); });
+  scatter(bb.kappa_kappa, bb.kappa_eta, bb.kappa_eta, bb.eta_eta,
+          [](ChainLink& link, Four row) { math::store(row, link.hess_bb.data()); });
 }
 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
@@ -276,16 +310,15 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
                          const Kinematics& reference) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   ObjectiveValue value;
-  energy::LinkEnd b = link_end(ribbon, problem, chain, k, 0);
-  for (std::size_t s = 0; s < n; ++s) {
-    energy::LinkEnd a = b;
-    b = link_end(ribbon, problem, chain, k, s + 1);
-    a.weight = end_weight(ribbon, s, s);
-    b.weight = end_weight(ribbon, s, s + 1);
-    const double x = 0.5 * ribbon.width * (b.eta - a.eta) / ribbon.rest_length[s];
-    value.elastic += energy::link_bending(energy::quadrature(ribbon, problem.model, s), a, b) *
-                     energy::width_factor(problem.model, x).value;
-    value.barrier += barrier_weight(ribbon, problem, s) * energy::ruling_barrier(x).value;
+  for (std::size_t first = 0; first < n; first += 4) {
+    const FourLinks four = four_links(ribbon, problem, chain, k, first);
+    const Four elastic = energy::link_bending(four.rule, four.weight, four.a, four.b) *
+                         energy::width_factor(problem.model, four.x).value;
+    const Four barrier = four.barrier_weight * energy::ruling_barrier(four.x).value;
+    for (std::size_t j = 0; j < std::min<std::size_t>(4, n - first); ++j) {
+      value.elastic += elastic[static_cast<int>(j)];
+      value.barrier += barrier[static_cast<int>(j)];
+    }
   }
   for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i] - reference.r[i]);
   if (problem.proximity > 0) {
@@ -322,19 +355,17 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   const auto n = static_cast<std::size_t>(ribbon.segments);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
-  energy::LinkEnd b = link_end(ribbon, problem, chain, k, 0);
-  for (std::size_t i = 0; i <= n; ++i) {
-    ChainLink& link = system.links[i];
-    fill_joint(ribbon, chain, k, i, link);
-    fill_node(ribbon, problem, k, i, link);
-    if (i == n) break;
-    energy::LinkEnd a = b;
-    b = link_end(ribbon, problem, chain, k, i + 1);
-    a.weight = end_weight(ribbon, i, i);
-    b.weight = end_weight(ribbon, i, i + 1);
-    fill_link(ribbon, problem, i, a, b, link);
-    link.span = ribbon.rest_length[i] * k.frame[i].col(2);
+  for (std::size_t first = 0; first <= n; first += 4) {
+    ChainLink* const links = system.links.data() + first;
+    fill_joints(ribbon, chain, k, first, std::min<std::size_t>(4, n + 1 - first), links);
+    if (first < n) fill_links(ribbon, problem, chain, k, first, std::min<std::size_t>(4, n - first), links);
   }
+  for (std::size_t i = 0; i <= n; ++i) {
+    fill_node(ribbon, problem, k, i, system.links[i]);
+    if (i < n) system.links[i].span = ribbon.rest_length[i] * k.frame[i].col(2);
+  }
+  // A loop's first joint shares its energy and turns nothing.
+  if (ribbon.hinge_length[0] == 0) still_joint(system.links[0]);
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);
     if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 1);
