@@ -48,16 +48,21 @@ struct Link {
   LinkQuadrature rule;
   double h_a, h_b, weight, slope, barrier;
 
-  LinkEnergy at(const VectorXd& u) const {
-    const auto end = [&](double h, double kappa, double eta) {
-      return LinkEnd{{kappa, eta}, energy::bending(model.strain, h, kappa, eta, geometry::make_fold(h, kappa, eta))};
+  template <class Real>
+  energy::LinkEnergy<Real> of(Real kappa_a, Real eta_a, Real kappa_b, Real eta_b) const {
+    const auto end = [&](double length, Real kappa, Real eta) {
+      const Real h = 0 * kappa + length;
+      const auto fold = geometry::make_fold(h, kappa, eta);
+      return energy::LinkEnd<Real>{{kappa, eta}, energy::bending(model.strain, h, kappa, eta, fold)};
     };
-    const double x = slope * (u[3] - u[1]);
+    const Real zero = 0 * kappa_a, x = slope * (eta_b - eta_a);
     auto wall = energy::ruling_barrier(x);
     wall = {barrier * wall.value, barrier * wall.first, barrier * wall.second};
-    return energy::link_energy(energy::width_factor(model, x), wall, slope, rule, weight, end(h_a, u[0], u[1]),
-                               end(h_b, u[2], u[3]));
+    return energy::link_energy<Real>(energy::width_factor(model, x), wall, zero + slope,
+                                     {zero + rule.midpoint, zero + rule.ruling}, zero + weight,
+                                     end(h_a, kappa_a, eta_a), end(h_b, kappa_b, eta_b));
   }
+  LinkEnergy at(const VectorXd& u) const { return of(u[0], u[1], u[2], u[3]); }
   VectorXd gradient(const VectorXd& u) const {
     const LinkEnergy e = at(u);
     return Vec4(e.grad_a.kappa, e.grad_a.eta, e.grad_b.kappa, e.grad_b.eta);
@@ -93,6 +98,37 @@ TEST(LinkEnergyDerivatives, AreSlopes) {
         expect_derivative([&](double h) { return VectorXd::Constant(1, link.at(u + h * d).value); },
                           VectorXd::Constant(1, link.gradient(u).dot(d)));
         expect_derivative([&](double h) { return link.gradient(u + h * d); }, hessian * d);
+      }
+    }
+  }
+}
+
+/// The same of four links at once, the last with a ratio beyond the reach of the series.
+TEST(LinkEnergyDerivatives, OfFourAreThoseOfEach) {
+  const math::Four kappa_a{1, -2, 0.3, 0}, eta_a{0.2, -0.4, 0, 0.7}, kappa_b{0.5, 2, 0, -1},
+      eta_b{0.4, -0.4, 0.1, -0.9};
+  for (const auto& [name, model] : models()) {
+    for (const double h_a : {0.3, 0.0}) {
+      SCOPED_TRACE(name + (h_a == 0 ? ", no hinge" : ""));
+      const Link link{model, energy::kCorrectedQuadrature, h_a, 0.5, 0.7, 0.4, 0.02};
+      const math::Four bent = h_a == 0 ? math::all(0) : kappa_a;  // kappa is 0 where there is no hinge
+      const auto four = link.of(bent, eta_a, kappa_b, eta_b);
+      for (int lane = 0; lane < 4; ++lane) {
+        const LinkEnergy one = link.of(bent[lane], eta_a[lane], kappa_b[lane], eta_b[lane]);
+        const auto same = [&](math::Four a, double b) { EXPECT_NEAR(a[lane], b, 1e-14 * (1 + std::abs(b))); };
+        same(four.value, one.value);
+        same(four.grad_a.kappa, one.grad_a.kappa);
+        same(four.grad_a.eta, one.grad_a.eta);
+        same(four.grad_b.kappa, one.grad_b.kappa);
+        same(four.grad_b.eta, one.grad_b.eta);
+        same(four.hess_aa.kappa_kappa, one.hess_aa.kappa_kappa);
+        same(four.hess_aa.kappa_eta, one.hess_aa.kappa_eta);
+        same(four.hess_aa.eta_eta, one.hess_aa.eta_eta);
+        same(four.hess_bb.kappa_eta, one.hess_bb.kappa_eta);
+        same(four.hess_bb.eta_eta, one.hess_bb.eta_eta);
+        same(four.hess_ab.kappa_eta, one.hess_ab.kappa_eta);
+        same(four.hess_ab.eta_kappa, one.hess_ab.eta_kappa);
+        same(four.hess_ab.eta_eta, one.hess_ab.eta_eta);
       }
     }
   }
