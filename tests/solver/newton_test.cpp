@@ -33,7 +33,8 @@ struct Random {
 
 Ribbon strip(bool loop, int half_twists, std::array<bool, 2> clamped, bool free_rulings) {
   geometry::RibbonSpec spec;
-  spec.segments = 8;
+  // 7, 8 or 9 nodes: nodes and links are worked off by fours, and these end the last four differently.
+  spec.segments = 6 + (clamped[0] ? 1 : 0) + (clamped[1] ? 1 : 0);
   spec.length = 1.3;
   spec.width = 0.15;
   spec.bending_stiffness = 0.7;
@@ -42,6 +43,7 @@ Ribbon strip(bool loop, int half_twists, std::array<bool, 2> clamped, bool free_
   spec.clamped = clamped;
   spec.free_rulings = free_rulings;
   spec.spacing = {1, 1.2, 0.8, 1, 1.5, 1, 0.9, 1.1};
+  spec.spacing.resize(static_cast<std::size_t>(spec.segments));
   return geometry::make_ribbon(spec);
 }
 
