@@ -172,10 +172,10 @@ void fill_joint(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, s
   link.axes_11 = in_space(d.eta_eta);
 }
 
-void fill_node(const Ribbon& ribbon, const ChainProblem& problem, const Kinematics& k, std::size_t i, ChainLink& link) {
-  link.stiffness = problem.proximity * ribbon.hinge_length[i];
+void fill_node(const ChainProblem& problem, const Kinematics& k, std::size_t i, ChainLink& link) {
+  link.stiffness = problem.tie.empty() ? 0 : problem.tie[i];
   link.force = -problem.force[i];
-  if (problem.proximity > 0) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
+  if (!problem.tie.empty()) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
 }
 
 void fill_link(const Ribbon& ribbon, const ChainProblem& problem, std::size_t i, const energy::LinkEnd& a,
@@ -193,6 +193,31 @@ void fill_link(const Ribbon& ribbon, const ChainProblem& problem, std::size_t i,
   link.hess_aa = e.hess_aa;
   link.hess_ab = e.hess_ab;
   link.hess_bb = e.hess_bb;
+}
+
+/// Bending of the hinge at node i beyond what it was before the step.
+energy::Bending bent(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                     std::size_t i) {
+  const double h = ribbon.hinge_length[i], kappa = problem.before->kappa[i], eta = problem.before->eta[i];
+  energy::Bending g = energy::bending(problem.model.strain, h, chain.kappa[i], chain.eta[i], k.fold[i]);
+  g.value -= energy::bending(problem.model.strain, h, kappa, eta, geometry::make_fold(h, kappa, eta)).value;
+  return g;
+}
+
+/// Kelvin and Voigt's dashpots on the hinges.
+void add_viscosity(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                   std::vector<ChainLink>& links) {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (ribbon.hinge_length[i] == 0) continue;
+    const energy::Bending g = bent(ribbon, problem, chain, k, i);
+    const double c = problem.viscosity * rigidity(ribbon) * ribbon.hinge_length[i], f = c * g.value;
+    Mat2 hessian;
+    hessian << c * g.kappa * g.kappa + f * g.kappa_kappa, c * g.kappa * g.eta + f * g.kappa_eta,
+        c * g.kappa * g.eta + f * g.kappa_eta, c * g.eta * g.eta + f * g.eta_eta;
+    ChainLink& link = links[i > 0 ? i - 1 : 0];
+    (i > 0 ? link.grad_b : link.grad_a) += f * Vec2(g.kappa, g.eta);
+    (i > 0 ? link.hess_bb : link.hess_aa) += hessian;
+  }
 }
 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
@@ -234,9 +259,45 @@ math::Mat6 follower_stiffness(const PointLoad& load, const Quat& frame) {
   return k;
 }
 
+/// Middle, d3 and d2 of segment i as columns.
+Mat3 facet_of(const Ribbon& ribbon, const Kinematics& k, std::size_t i) {
+  Mat3 facet;
+  facet << k.r[i] + 0.5 * ribbon.rest_length[i] * k.frame[i].col(2), k.frame[i].col(2), k.frame[i].col(1);
+  return facet;
+}
+
+/// Each column of a facet moves by theta x arm, the middle by v as well; the arms turn with the facet.
+math::PoseTerm facet_term(const Ribbon& ribbon, const FacetTie& tie, const Kinematics& k, std::size_t i) {
+  const Mat3 facet = facet_of(ribbon, k, i), force = (facet - tie.anchor) * tie.weight;
+  Mat3 arm = facet;
+  arm.col(0) -= k.r[i];
+  math::PoseTerm term;
+  term.node = static_cast<int>(i);
+  Vec3 torque = Vec3::Zero();
+  Mat3 products = Mat3::Zero(), forces = Mat3::Zero();
+  for (int a = 0; a < 3; ++a) {
+    torque += arm.col(a).cross(force.col(a));
+    forces += arm.col(a) * force.col(a).transpose();
+  }
+  products = arm * tie.weight * arm.transpose();
+  term.gradient << force.col(0), torque;
+  term.hessian.topLeftCorner<3, 3>() = tie.weight(0, 0) * Mat3::Identity();
+  term.hessian.topRightCorner<3, 3>() = -math::skew(arm * tie.weight.col(0));
+  term.hessian.bottomLeftCorner<3, 3>() = term.hessian.topRightCorner<3, 3>().transpose();
+  term.hessian.bottomRightCorner<3, 3>() = products.trace() * Mat3::Identity() - products;
+  term.geometric = 0.5 * (forces + forces.transpose()) - forces.trace() * Mat3::Identity();
+  return term;
+}
+
+/// Keeps the terms sorted by decreasing node.
+void insert(const math::PoseTerm& term, std::vector<math::PoseTerm>& terms) {
+  const auto after = std::upper_bound(terms.begin(), terms.end(), term,
+                                      [](const auto& a, const auto& b) { return a.node > b.node; });
+  terms.insert(after, term);
+}
+
 /// Point loads as gradients, with probe rows for the part of their derivative that no potential has.
 void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics& k, ChainSystem& system) {
-  system.pose_terms.clear();
   const auto count = static_cast<Eigen::Index>(problem.loads.size());
   system.follower.setZero(6 * count, 6 * count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -245,7 +306,7 @@ void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics
     math::PoseTerm term;
     term.node = load.node;
     term.gradient << -in_space(load, load.force, frame), -in_space(load, load.torque, frame);
-    system.pose_terms.push_back(term);
+    insert(term, system.pose_terms);
     system.follower.block<6, 6>(6 * i, 6 * i) = follower_stiffness(load, frame);
     for (int c = 0; c < 6; ++c) {
       ChainRow row;
@@ -288,10 +349,18 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
     value.barrier += barrier_weight(ribbon, problem, s) * energy::ruling_barrier(x).value;
   }
   for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i] - reference.r[i]);
-  if (problem.proximity > 0) {
-    for (std::size_t i = 0; i <= n; ++i) {
-      value.rest += 0.5 * problem.proximity * ribbon.hinge_length[i] * (k.r[i] - problem.anchor[i]).squaredNorm();
-    }
+  for (std::size_t i = 0; i < problem.tie.size(); ++i) {
+    value.rest += 0.5 * problem.tie[i] * (k.r[i] - problem.anchor[i]).squaredNorm();
+  }
+  for (std::size_t i = 0; i < problem.facets.size(); ++i) {
+    const FacetTie& tie = problem.facets[i];
+    const Mat3 gap = facet_of(ribbon, k, i) - tie.anchor;
+    value.rest += 0.5 * (tie.weight * gap.transpose() * gap).trace();
+  }
+  for (std::size_t i = 0; problem.viscosity > 0 && i <= n; ++i) {
+    if (ribbon.hinge_length[i] == 0) continue;
+    const double g = bent(ribbon, problem, chain, k, i).value;
+    value.rest += 0.5 * problem.viscosity * rigidity(ribbon) * ribbon.hinge_length[i] * g * g;
   }
   for (const PointLoad& load : problem.loads) {
     const auto i = static_cast<std::size_t>(std::max(load.node, 0));
@@ -326,7 +395,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   for (std::size_t i = 0; i <= n; ++i) {
     ChainLink& link = system.links[i];
     fill_joint(ribbon, chain, k, i, link);
-    fill_node(ribbon, problem, k, i, link);
+    fill_node(problem, k, i, link);
     if (i == n) break;
     energy::LinkEnd a = b;
     b = link_end(ribbon, problem, chain, k, i + 1);
@@ -335,11 +404,16 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
     fill_link(ribbon, problem, i, a, b, link);
     link.span = ribbon.rest_length[i] * k.frame[i].col(2);
   }
+  if (problem.viscosity > 0) add_viscosity(ribbon, problem, chain, k, system.links);
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);
     if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 1);
   }
   system.rows.clear();
+  system.pose_terms.clear();
+  for (std::size_t i = problem.facets.size(); i-- > 0;) {
+    system.pose_terms.push_back(facet_term(ribbon, problem.facets[i], k, i));
+  }
   add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);
 }
