@@ -10,7 +10,7 @@ namespace {
 
 using energy::Elastic;
 using energy::Model;
-using energy::WidthFactor;
+using WidthFactor = energy::WidthFactor<double>;
 
 /// The series of atanh(x)/x and its derivatives, summed to the end in extended precision.
 void series(long double x, long double* out) {
@@ -99,6 +99,27 @@ TEST(WidthFactor, DerivativesOfEveryKind) {
   check([](double x) { return energy::exact_factor(x); });
   check([](double x) { return energy::truncated_factor(5, x); });
   check([](double x) { return energy::ruling_barrier(x); });
+}
+
+/// Four arguments at once: all in reach of the series, none, some, and one where the energy is infinite.
+TEST(WidthFactor, OfFourIsThatOfEach) {
+  const auto check = [](const auto& factor) {
+    for (const math::Four& x : {math::Four{1e-9, 0.03, -0.19, 0.0}, math::Four{0.3, -0.5, 0.9, -0.99},
+                                math::Four{0.1, -0.7, 0.1999, 0.2001}, math::Four{0.1, 1.0, -1.5, 0.6}}) {
+      const energy::WidthFactor<math::Four> four = factor(x);
+      for (int lane = 0; lane < 4; ++lane) {
+        SCOPED_TRACE(x[lane]);
+        const WidthFactor one = factor(x[lane]);
+        EXPECT_DOUBLE_EQ(four.value[lane], one.value);
+        EXPECT_DOUBLE_EQ(four.first[lane], one.first);
+        EXPECT_DOUBLE_EQ(four.second[lane], one.second);
+      }
+    }
+  };
+  for (const Elastic elastic : {Elastic::wunderlich, Elastic::truncated, Elastic::sadowsky}) {
+    check([&](auto x) { return energy::width_factor(Model{elastic, 5, {}}, x); });
+  }
+  check([](auto x) { return energy::ruling_barrier(x); });
 }
 
 // @eq Shen2015:13

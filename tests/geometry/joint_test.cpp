@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::VectorXd;
 using geometry::Chain;
-using geometry::Fold;
 using geometry::Ribbon;
 using geometry::RibbonSpec;
 
@@ -31,6 +30,17 @@ struct Joint {
     return math::log_map(Joint{h, kappa + dkappa, eta + deta}.rotation() * rotation().conjugate());
   }
 };
+
+struct Derivatives {
+  Vec3 kappa, eta, kappa_eta, eta_eta;
+};
+
+Derivatives derivatives(const Joint& joint) {
+  const auto [h, kappa, eta] = joint;
+  const auto d = fold_derivatives(geometry::make_fold(h, kappa, eta), h, kappa, eta);
+  const auto vector = [](const geometry::InFrame<double>& v) { return Vec3(v.x, v.y, v.z); };
+  return {vector(d.kappa), vector(d.eta), vector(d.kappa_eta), vector(d.eta_eta)};
+}
 
 /// Random ones, flat ones (kappa = 0, eta = 0) and folds by more than a right angle.
 std::vector<Joint> sample_joints() {
@@ -59,8 +69,7 @@ TEST(Fold, IsATurnAboutTheRuling) {
 TEST(Fold, FirstDerivatives) {
   for (const Joint& joint : sample_joints()) {
     SCOPED_TRACE(std::to_string(joint.h) + " " + std::to_string(joint.kappa) + " " + std::to_string(joint.eta));
-    const auto d =
-        fold_derivatives(geometry::make_fold(joint.h, joint.kappa, joint.eta), joint.h, joint.kappa, joint.eta);
+    const Derivatives d = derivatives(joint);
     // Along kappa alone the turn is linear: a rotation about the ruling.
     EXPECT_LE((joint.turn(0.1, 0) - 0.1 * d.kappa).norm(), 1e-15);
     if (joint.kappa == 0) {
@@ -73,11 +82,31 @@ TEST(Fold, FirstDerivatives) {
   }
 }
 
+/// Small angles, large ones and both in one vector of four.
+TEST(Fold, OfFourIsThatOfEach) {
+  const std::vector<Joint> joints = sample_joints();
+  for (std::size_t i = 0; i + 4 <= joints.size(); ++i) {
+    const Joint* j = joints.data() + i;
+    const math::Four h{j[0].h, j[1].h, j[2].h, j[3].h}, kappa{j[0].kappa, j[1].kappa, j[2].kappa, j[3].kappa};
+    const math::Four eta{j[0].eta, j[1].eta, j[2].eta, j[3].eta};
+    const auto d = fold_derivatives(geometry::make_fold(h, kappa, eta), h, kappa, eta);
+    for (int lane = 0; lane < 4; ++lane) {
+      const Derivatives one = derivatives(j[lane]);
+      const auto error = [&](const geometry::InFrame<math::Four>& v, const Vec3& expected) {
+        return (Vec3(v.x[lane], v.y[lane], v.z[lane]) - expected).norm() / (1 + expected.norm());
+      };
+      EXPECT_LE(error(d.kappa, one.kappa), 1e-15);
+      EXPECT_LE(error(d.eta, one.eta), 1e-15);
+      EXPECT_LE(error(d.kappa_eta, one.kappa_eta), 1e-15);
+      EXPECT_LE(error(d.eta_eta, one.eta_eta), 1e-15);
+    }
+  }
+}
+
 TEST(Fold, SecondDerivatives) {
   for (const Joint& joint : sample_joints()) {
     SCOPED_TRACE(std::to_string(joint.h) + " " + std::to_string(joint.kappa) + " " + std::to_string(joint.eta));
-    const auto d =
-        fold_derivatives(geometry::make_fold(joint.h, joint.kappa, joint.eta), joint.h, joint.kappa, joint.eta);
+    const Derivatives d = derivatives(joint);
     for (const Vec2& way : {Vec2(0, 1), Vec2(0.8, 0.6), Vec2(-0.6, 0.8)}) {
       const Vec3 second = 2 * way[0] * way[1] * d.kappa_eta + way[1] * way[1] * d.eta_eta;
       const auto error = [&](double h) {

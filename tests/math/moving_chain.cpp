@@ -27,7 +27,7 @@ Poses poses_of(const MovingChain& chain) {
   Vec3 r = chain.base.position;
   for (std::size_t i = 0; i < chain.u.size(); ++i) {
     out.before.push_back(q);
-    const geometry::Fold fold = geometry::make_fold(chain.hinge[i], chain.u[i][0], chain.u[i][1]);
+    const auto fold = geometry::make_fold(chain.hinge[i], chain.u[i][0], chain.u[i][1]);
     q = q * fold_rotation(fold, chain.u[i][1]);
     out.after.push_back(q);
     out.r.push_back(r);
@@ -144,9 +144,10 @@ ChainSystem system_at(const MovingChain& chain) {
     const double kappa = chain.u[i][0], eta = chain.u[i][1];
     const auto d = fold_derivatives(geometry::make_fold(chain.hinge[i], kappa, eta), chain.hinge[i], kappa, eta);
     const Mat3 before = poses.before[i].toRotationMatrix();
-    link.axes << before * d.kappa, before * d.eta;
-    link.axes_01 = before * d.kappa_eta;
-    link.axes_11 = before * d.eta_eta;
+    const auto in_space = [&](const geometry::InFrame<double>& v) -> Vec3 { return before * Vec3(v.x, v.y, v.z); };
+    link.axes << in_space(d.kappa), in_space(d.eta);
+    link.axes_01 = in_space(d.kappa_eta);
+    link.axes_11 = in_space(d.eta_eta);
     link.stiffness = chain.stiffness[i];
     link.force = chain.stiffness[i] * (poses.r[i] - chain.anchor[i]);
     if (i == chain.span.size()) break;

@@ -65,7 +65,9 @@ ChainProblem random_problem(const Ribbon& ribbon, const energy::Model& model, Ra
     problem.tie.push_back(3 + random());
   }
   for (int i = 0; i < ribbon.segments; ++i) {
-    const Mat3 root = random.matrix(), anchor = random.matrix();
+    Mat3 root, anchor;
+    root << random.vector(), random.vector(), random.vector();
+    anchor << random.vector(), random.vector(), random.vector();
     problem.facets.push_back({root * root.transpose(), anchor});
   }
   problem.loads = {{ribbon.segments, LoadFrame::material, random.vector(), random.vector()},

@@ -30,23 +30,24 @@ inline void add_trapezoid(double weight, const Ends& ends, int at, LinkTerms& te
 }
 
 /// The correction knows tau only as kappa eta.
-inline void add_correction(const LinkQuadrature& rule, double weight, const Ends& ends, LinkTerms& terms) {
-  const LinkEnergy e = correction(rule, weight, {ends[0], ends[2]}, {ends[3], ends[5]});
+inline void add_correction(const LinkQuadrature<double>& rule, double weight, const Ends& ends, LinkTerms& terms) {
+  const auto e = correction<double>(rule, weight, {ends[0], ends[2]}, {ends[3], ends[5]});
   terms.value += e.value;
-  for (int i = 0; i < 2; ++i) {
-    terms.gradient[2 * i] += e.grad_a[i];
-    terms.gradient[3 + 2 * i] += e.grad_b[i];
-    for (int j = 0; j < 2; ++j) {
-      terms.hessian(2 * i, 2 * j) += e.hess_aa(i, j);
-      terms.hessian(2 * i, 3 + 2 * j) += e.hess_ab(i, j);
-      terms.hessian(3 + 2 * i, 2 * j) += e.hess_ab(j, i);
-      terms.hessian(3 + 2 * i, 3 + 2 * j) += e.hess_bb(i, j);
-    }
+  Mat4 hessian;  // in (kappa_a, eta_a, kappa_b, eta_b)
+  hessian << e.hess_aa.kappa_kappa, e.hess_aa.kappa_eta, e.hess_ab.kappa_kappa, e.hess_ab.kappa_eta,  //
+      e.hess_aa.kappa_eta, e.hess_aa.eta_eta, e.hess_ab.eta_kappa, e.hess_ab.eta_eta,                 //
+      e.hess_ab.kappa_kappa, e.hess_ab.eta_kappa, e.hess_bb.kappa_kappa, e.hess_bb.kappa_eta,         //
+      e.hess_ab.kappa_eta, e.hess_ab.eta_eta, e.hess_bb.kappa_eta, e.hess_bb.eta_eta;
+  const Vec4 gradient(e.grad_a.kappa, e.grad_a.eta, e.grad_b.kappa, e.grad_b.eta);
+  constexpr int at[] = {0, 2, 3, 5};
+  for (int i = 0; i < 4; ++i) {
+    terms.gradient[at[i]] += gradient[i];
+    for (int j = 0; j < 4; ++j) terms.hessian(at[i], at[j]) += hessian(i, j);
   }
 }
 
 /// Multiplies by phi(x), x = slope (eta_b - eta_a).
-inline void multiply(const WidthFactor& phi, double slope, LinkTerms& terms) {
+inline void multiply(const WidthFactor<double>& phi, double slope, LinkTerms& terms) {
   Ends x = Ends::Zero();
   x[kEtaA] = -slope;
   x[kEtaB] = slope;
@@ -59,7 +60,7 @@ inline void multiply(const WidthFactor& phi, double slope, LinkTerms& terms) {
 
 /// Energy of link `s` with derivatives in its ends.
 inline LinkTerms link_terms(const geometry::Ribbon& ribbon, const Model& model, std::size_t s, const Ends& ends) {
-  const LinkQuadrature& rule = quadrature(ribbon, model, s);
+  const LinkQuadrature<double>& rule = quadrature(ribbon, model, s);
   const double weight = 0.5 * ribbon.bending_stiffness * ribbon.width * ribbon.rest_length[s];
   const double slope = 0.5 * ribbon.width / ribbon.rest_length[s];
   LinkTerms terms;
@@ -72,14 +73,14 @@ inline LinkTerms link_terms(const geometry::Ribbon& ribbon, const Model& model, 
 
 /// The same without derivatives.
 inline double link_value(const geometry::Ribbon& ribbon, const Model& model, std::size_t s, const Ends& ends) {
-  const LinkQuadrature& rule = quadrature(ribbon, model, s);
+  const LinkQuadrature<double>& rule = quadrature(ribbon, model, s);
   const double weight = 0.5 * ribbon.bending_stiffness * ribbon.width * ribbon.rest_length[s];
   double sum = 0;
   for (const int at : {0, 3}) {
     const double kappa = ends[at], tau = ends[at + 1], eta = ends[at + 2];
     sum += 0.5 * (1 - rule.midpoint) * weight * (kappa * kappa + tau * tau * (2 + eta * eta));
   }
-  if (rule.midpoint != 0) sum += correction_value(rule, weight, {ends[0], ends[2]}, {ends[3], ends[5]});
+  if (rule.midpoint != 0) sum += correction_value<double>(rule, weight, {ends[0], ends[2]}, {ends[3], ends[5]});
   const double slope = 0.5 * ribbon.width / ribbon.rest_length[s];
   return width_factor(model, slope * (ends[kEtaB] - ends[kEtaA])).value * sum;
 }

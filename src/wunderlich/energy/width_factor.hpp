@@ -10,15 +10,34 @@
 namespace wunderlich::energy {
 
 /// A function of the ruling ratio x with two derivatives.
+template <class Real>
 struct WidthFactor {
-  double value, first, second;
+  Real value, first, second;
 };
 
+namespace detail {
+
+/// Series to `kSeriesOrder` are exact to 1e-16, derivatives and all, for x^2 below this.
+inline constexpr double kSeriesBound = 0.04;
+inline constexpr int kSeriesOrder = 14;
+
+/// f at each of four x. Branches that the lanes do not share are taken so.
+template <class Function>
+inline WidthFactor<math::Four> by_lane(const Function& f, math::Four x) {
+  const WidthFactor<double> a = f(x[0]), b = f(x[1]), c = f(x[2]), d = f(x[3]);
+  return {math::Four{a.value, b.value, c.value, d.value}, math::Four{a.first, b.first, c.first, d.first},
+          math::Four{a.second, b.second, c.second, d.second}};
+}
+
+}  // namespace detail
+
 /// sum_{a=0}^{order} x^(2a)/(2a+1): the width integral cut off.   @eq Shen2015:4
-inline WidthFactor truncated_factor(int order, double x) {
+template <class Real>
+inline WidthFactor<Real> truncated_factor(int order, Real x) {
   // Horner in y = x^2 on F(y), F'(y) and F''(y)/2; then phi = F(x^2).
-  const double y = x * x;
-  double f = 0, f1 = 0, f2 = 0;
+  const Real y = x * x;
+  Real f = 0 * y, f1 = f, f2 = f;
+#pragma GCC unroll 16
   for (int a = order; a >= 0; --a) {
     f2 = f2 * y + f1;
     f1 = f1 * y + f;
@@ -27,52 +46,72 @@ inline WidthFactor truncated_factor(int order, double x) {
   return {f, 2 * x * f1, 2 * f1 + 8 * y * f2};
 }
 
-/// The first thirteen terms of atanh(x)/x, to 1e-16 for x^2 < 0.04: F(y), F'(y) and F''(y)/2 at once, y = x^2.
-inline WidthFactor small_factor(double x) {
-  constexpr auto term = [](int a) {
-    const double next = a + 1, after = a + 2;
-    return math::Four{1.0 / (2 * a + 1), next / (2 * next + 1), 0.5 * after * next / (2 * after + 1), 0};
-  };
-  static constexpr math::Four terms[] = {term(0), term(1), term(2), term(3),  term(4),  term(5), term(6),
-                                         term(7), term(8), term(9), term(10), term(11), term(12)};
-  const double y = x * x;
-  const math::Four power = math::all(y);
-  math::Four sum = terms[12];
-  for (int a = 11; a >= 0; --a) sum = sum * power + terms[a];
-  return {sum[0], 2 * x * sum[1], 2 * sum[1] + 8 * y * sum[2]};
+namespace detail {
+
+inline WidthFactor<double> infinite(double x) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {kInfinity, std::copysign(kInfinity, x), kInfinity};
 }
 
-/// atanh(x)/x, the exact width integral; to 1e-15 for every |x| < 1, infinite beyond.   @eq Shen2015:3
-inline WidthFactor exact_factor(double x) {
-  const double y = x * x;
-  if (y < 0.04) return small_factor(x);  // free of cancellation
-  if (y >= 1) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {kInfinity, std::copysign(kInfinity, x), kInfinity};
-  }
+/// atanh(x)/x where cancellation does no harm.
+inline WidthFactor<double> logarithmic_factor(double x) {
   const double slope = 1 / ((1 - x) * (1 + x));  // of atanh
   const double value = 0.5 * std::log((1 + x) / (1 - x)) / x;
   const double first = (slope - value) / x;
   return {value, first, 2 * (slope * slope - first / x)};
 }
 
-/// The factor of a model; 1 in the Sadowsky limit.
-inline WidthFactor width_factor(const Model& model, double x) {
-  if (model.elastic == Elastic::wunderlich) return exact_factor(x);
-  if (model.elastic == Elastic::truncated) return truncated_factor(model.taylor_order, x);
-  return {1, 0, 0};
+}  // namespace detail
+
+/// atanh(x)/x, the exact width integral; to 1e-15 for every |x| < 1, infinite beyond.   @eq Shen2015:3
+inline WidthFactor<double> exact_factor(double x) {
+  if (x * x < detail::kSeriesBound) return truncated_factor(detail::kSeriesOrder, x);
+  return x * x < 1 ? detail::logarithmic_factor(x) : detail::infinite(x);
+}
+inline WidthFactor<math::Four> exact_factor(math::Four x) {
+  if (math::all_below(x * x, detail::kSeriesBound)) return truncated_factor(detail::kSeriesOrder, x);
+  return detail::by_lane([](double lane) { return exact_factor(lane); }, x);
 }
 
-/// -ln(1 - x^2): keeps rulings from meeting inside the strip; infinite from |x| = 1 on.   @eq Shen2015:13
-inline WidthFactor ruling_barrier(double x) {
+/// The factor of a model; 1 in the Sadowsky limit.
+template <class Real>
+inline WidthFactor<Real> width_factor(const Model& model, Real x) {
+  if (model.elastic == Elastic::wunderlich) return exact_factor(x);
+  return truncated_factor(model.elastic == Elastic::truncated ? model.taylor_order : 0, x);
+}
+
+namespace detail {
+
+/// -ln(1 - x^2), |x| < 1.
+inline double log_barrier(double x) {
   const double gap = (1 - x) * (1 + x);
-  if (!(gap > 0)) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {kInfinity, std::copysign(kInfinity, x), kInfinity};
-  }
-  const double value = gap > 0.5 ? -std::log1p(-x * x) : -std::log(gap);
-  const double inverse = 1 / gap;
-  return {value, 2 * x * inverse, 2 * (1 + x * x) * inverse * inverse};
+  return gap > 0.5 ? -std::log1p(-x * x) : -std::log(gap);
+}
+inline math::Four log_barrier(math::Four x) {
+  const math::Four y = x * x;
+  if (!math::all_below(y, kSeriesBound)) return math::by_lane([](double lane) { return log_barrier(lane); }, x);
+  math::Four sum = 0 * y;
+#pragma GCC unroll 16
+  for (int a = kSeriesOrder; a >= 1; --a) sum = (sum + 1.0 / a) * y;
+  return sum;
+}
+
+/// The barrier where it is finite.
+template <class Real>
+inline WidthFactor<Real> finite_barrier(Real x) {
+  const Real inverse = 1 / ((1 - x) * (1 + x));
+  return {log_barrier(x), 2 * x * inverse, 2 * (1 + x * x) * inverse * inverse};
+}
+
+}  // namespace detail
+
+/// -ln(1 - x^2): keeps rulings from meeting inside the strip; infinite from |x| = 1 on.   @eq Shen2015:13
+inline WidthFactor<double> ruling_barrier(double x) {
+  return x * x < 1 ? detail::finite_barrier(x) : detail::infinite(x);
+}
+inline WidthFactor<math::Four> ruling_barrier(math::Four x) {
+  if (math::all_below(x * x, 1)) return detail::finite_barrier(x);
+  return detail::by_lane([](double lane) { return ruling_barrier(lane); }, x);
 }
 
 }  // namespace wunderlich::energy

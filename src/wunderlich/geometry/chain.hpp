@@ -24,7 +24,9 @@ struct Kinematics {
   std::vector<Vec3> r;      ///< (segments + 1)
   std::vector<Quat> q;      ///< (segments + 1)
   std::vector<Mat3> frame;  ///< (segments + 1) the same as matrices
-  std::vector<Fold> fold;   ///< (segments + 1)
+
+  /// Nodes 4b ... 4b + 3 in entry b; beyond the last node it is repeated.
+  std::vector<Fold<math::Four>> fold;
 };
 
 void forward_kinematics(const Ribbon& ribbon, const Chain& chain, Kinematics& kinematics);
@@ -42,6 +44,12 @@ Chain straight_chain(const Ribbon& ribbon, const Pose& base);
 /// the frame at the last node only but shares its energy between the first and the last link.
 inline double fold_length(const Ribbon& ribbon, std::size_t node) {
   return ribbon.is_loop() && node == 0 ? ribbon.hinge_length.back() : ribbon.hinge_length[node];
+}
+
+/// The same for four nodes.
+inline math::Four fold_lengths(const Ribbon& ribbon, std::size_t first) {
+  const math::Four h = math::load(ribbon.hinge_length, first);
+  return first > 0 ? h : math::Four{fold_length(ribbon, 0), h[1], h[2], h[3]};
 }
 
 /// May kappa, eta at this node vary: kappa where there is a hinge, eta everywhere but at the ends of an open

@@ -5,60 +5,76 @@
 /// @eq Shen2015:14 @eq Shen2015:15 (solved for, not enforced)
 #pragma once
 
-#include <cmath>
-
 #include "wunderlich/base/types.hpp"
 #include "wunderlich/math/sine.hpp"
 
 namespace wunderlich::geometry {
 
 /// Half-angle form of the fold; cheap to compute once and to differentiate.
+template <class Real>
 struct Fold {
-  double s2 = 1;        ///< 1 + eta^2
-  double s = 1;         ///< |ruling|
-  double inverse = 1;   ///< 1 / |ruling|
-  double half_sin = 0;  ///< sin and cos of half the fold angle h kappa s
-  double half_cos = 1;
+  Real s2;        ///< 1 + eta^2
+  Real s;         ///< |ruling|
+  Real inverse;   ///< 1 / |ruling|
+  Real half_sin;  ///< sin and cos of half the fold angle h kappa s
+  Real half_cos;
 };
 
-inline Fold make_fold(double hinge_length, double kappa, double eta) {
-  Fold fold;
-  fold.s2 = 1 + eta * eta;
-  fold.s = std::sqrt(fold.s2);
-  fold.inverse = 1 / fold.s;
-  const auto [sine, cosine] = math::sine_cosine(0.5 * hinge_length * kappa * fold.s);
-  fold.half_sin = sine;
-  fold.half_cos = cosine;
-  return fold;
+template <class Real>
+inline Fold<Real> make_fold(Real hinge_length, Real kappa, Real eta) {
+  const Real s2 = 1 + eta * eta, s = math::sqrt(s2);
+  const auto [sine, cosine] = math::sine_cosine(0.5 * hinge_length * kappa * s);
+  return {s2, s, 1 / s, sine, cosine};
+}
+
+/// The fold as a quaternion (0, f, f eta, half_cos): it has no component along the normal. This is f.
+template <class Real>
+inline Real sine_part(const Fold<Real>& fold) {
+  return fold.half_sin * fold.inverse;
+}
+
+/// The folds of the nodes that follow each of four: `after` goes on where `here` ends.
+inline Fold<math::Four> moved_on(const Fold<math::Four>& here, const Fold<math::Four>& after) {
+  return {math::moved_on(here.s2, after.s2), math::moved_on(here.s, after.s),
+          math::moved_on(here.inverse, after.inverse), math::moved_on(here.half_sin, after.half_sin),
+          math::moved_on(here.half_cos, after.half_cos)};
 }
 
 /// frame of the next segment = frame * fold_rotation
-inline Quat fold_rotation(const Fold& fold, double eta) {
-  const double f = fold.half_sin * fold.inverse;
+inline Quat fold_rotation(const Fold<double>& fold, double eta) {
+  const double f = sine_part(fold);
   return Quat(fold.half_cos, 0, f, f * eta);
 }
 
-/// First derivatives of the rotation (left increments) and the symmetric second ones, in the parent's axes.
-struct FoldDerivatives {
-  Vec3 kappa, eta;          ///< theta = kappa_axis dkappa + eta_axis deta + ...
-  Vec3 kappa_eta, eta_eta;  ///< ... + kappa_eta dkappa deta + eta_eta deta^2 / 2
+/// Components along d1, d2, d3 of the frame before the fold.
+template <class Real>
+struct InFrame {
+  Real x, y, z;
 };
 
-inline FoldDerivatives fold_derivatives(const Fold& fold, double h, double kappa, double eta) {
-  const double sine = 2 * fold.half_sin * fold.half_cos;
-  const double versine = 2 * fold.half_sin * fold.half_sin;  // 1 - cos
-  const double cosine = 1 - versine;
-  const double i1 = fold.inverse, i2 = i1 * i1, hk = h * kappa;
-  const double a = hk * eta * i2, b = sine * i1 * i2, c = versine * i2;
-  FoldDerivatives d;
-  d.kappa = {0, h, h * eta};
+/// First derivatives of the rotation (left increments) and the symmetric second ones, in the parent's axes.
+template <class Real>
+struct FoldDerivatives {
+  InFrame<Real> kappa, eta;          ///< theta = kappa_axis dkappa + eta_axis deta + ...
+  InFrame<Real> kappa_eta, eta_eta;  ///< ... + kappa_eta dkappa deta + eta_eta deta^2 / 2
+};
+
+template <class Real>
+inline FoldDerivatives<Real> fold_derivatives(const Fold<Real>& fold, Real h, Real kappa, Real eta) {
+  const Real sine = 2 * fold.half_sin * fold.half_cos;
+  const Real versine = 2 * fold.half_sin * fold.half_sin;  // 1 - cos
+  const Real cosine = 1 - versine;
+  const Real i1 = fold.inverse, i2 = i1 * i1, hk = h * kappa;
+  const Real a = hk * eta * i2, b = sine * i1 * i2, c = versine * i2;
+  FoldDerivatives<Real> d;
+  d.kappa = {0 * h, h, h * eta};
   d.eta = {c, a - b * eta, a * eta + b};
-  const double ak = h * eta * i2, bk = h * cosine * i2, ck = h * sine * i1;
+  const Real ak = h * eta * i2, bk = h * cosine * i2, ck = h * sine * i1;
   d.kappa_eta = {0.5 * ck, 0.5 * (ak - bk * eta), 0.5 * (h + ak * eta + bk)};
-  const double turn_eta = hk * eta * i1;  // d(angle)/d(eta)
-  const double ae = hk * (1 - eta * eta) * i2 * i2;
-  const double be = (cosine * turn_eta * i1 - 3 * sine * eta * i1 * i2) * i2;
-  const double ce = (sine * turn_eta - 2 * versine * eta * i2) * i2;
+  const Real turn_eta = hk * eta * i1;  // d(angle)/d(eta)
+  const Real ae = hk * (1 - eta * eta) * i2 * i2;
+  const Real be = (cosine * turn_eta * i1 - 3 * sine * eta * i1 * i2) * i2;
+  const Real ce = (sine * turn_eta - 2 * versine * eta * i2) * i2;
   d.eta_eta = {ce, ae - be * eta - b, ae * eta + a + be};
   return d;
 }

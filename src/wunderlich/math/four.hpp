@@ -1,8 +1,16 @@
-/// Four doubles that are added and multiplied at once: three-vectors with a fourth entry to spare.
+/// Four doubles that are added and multiplied at once: three-vectors with a fourth entry to spare, or one number of
+/// each of four nodes.
+///
+/// For the second use, formulas are templates on the number type, `double` or `Four`; what they need beside arithmetic
+/// (roots, comparisons, functions taken lane by lane) exists for both.
 ///
 /// With AVX the compiler's own vector of four; without it two vectors of two, because compilers split a vector of four
 /// badly. The layout in memory is the same, so that code compiled either way can be linked.
 #pragma once
+
+#include <cmath>
+#include <cstring>
+#include <vector>
 
 #include "wunderlich/base/types.hpp"
 
@@ -47,6 +55,19 @@ inline void transpose3(Four& a, Four& b, Four& c) {
   c = __builtin_shufflevector(low, c, 2, 3, 6, 6);
 }
 
+/// Turns the rows a, b, c, d into columns.
+inline void transpose4(Four& a, Four& b, Four& c, Four& d) {
+  const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), ba = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), dc = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ba, dc, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ba, dc, 2, 3, 6, 7);
+}
+
+/// (a1, a2, a3, b0): each lane moved on to the next, where b goes on where a ends.
+inline Four moved_on(Four a, Four b) { return __builtin_shufflevector(a, b, 1, 2, 3, 4); }
+
 #else
 
 using Two = double __attribute__((vector_size(16)));
@@ -56,6 +77,7 @@ struct alignas(32) Four {
   Four() = default;
   constexpr Four(Two a, Two b) : low(a), high(b) {}
   constexpr Four(double x, double y, double z, double w) : low{x, y}, high{z, w} {}
+  constexpr Four(double x) : low{x, x}, high{x, x} {}  // implicit, as the compiler's vectors take numbers
   double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
   Four& operator+=(Four o) { return low += o.low, high += o.high, *this; }
   Four& operator-=(Four o) { return low -= o.low, high -= o.high, *this; }
@@ -65,6 +87,7 @@ inline Four operator+(Four a, Four b) { return {a.low + b.low, a.high + b.high};
 inline Four operator-(Four a, Four b) { return {a.low - b.low, a.high - b.high}; }
 inline Four operator-(Four a) { return {-a.low, -a.high}; }
 inline Four operator*(Four a, Four b) { return {a.low * b.low, a.high * b.high}; }
+inline Four operator/(Four a, Four b) { return {a.low / b.low, a.high / b.high}; }
 inline Four all(double x) { return {Two{x, x}, Two{x, x}}; }
 
 inline Four turn_left(Four a) {
@@ -104,6 +127,21 @@ inline void transpose3(Four& a, Four& b, Four& c) {
   b = y;
 }
 
+inline void transpose4(Four& a, Four& b, Four& c, Four& d) {
+  const auto first = [](Two x, Two y) { return __builtin_shufflevector(x, y, 0, 2); };
+  const auto second = [](Two x, Two y) { return __builtin_shufflevector(x, y, 1, 3); };
+  const Four x{first(a.low, b.low), first(c.low, d.low)}, y{second(a.low, b.low), second(c.low, d.low)};
+  const Four z{first(a.high, b.high), first(c.high, d.high)}, w{second(a.high, b.high), second(c.high, d.high)};
+  a = x;
+  b = y;
+  c = z;
+  d = w;
+}
+
+inline Four moved_on(Four a, Four b) {
+  return {__builtin_shufflevector(a.low, a.high, 1, 2), __builtin_shufflevector(a.high, b.low, 1, 2)};
+}
+
 #endif
 
 inline Four four(const Vec3& a, double fourth = 0) { return Four{a[0], a[1], a[2], fourth}; }
@@ -118,5 +156,47 @@ inline double dot3(Four a, Four b) {
   const Four p = a * b;
   return p[0] + p[1] + p[2];
 }
+
+/// a . b
+inline double dot4(Four a, Four b) {
+  const Four p = a * b;
+  return p[0] + p[1] + p[2] + p[3];
+}
+
+/// (f(a0), f(a1), f(a2), f(a3))
+template <class Function>
+Four by_lane(const Function& f, Four a) {
+  return Four{f(a[0]), f(a[1]), f(a[2]), f(a[3])};
+}
+
+using std::cos;
+using std::sin;
+using std::sqrt;
+inline Four sin(Four a) {
+  return by_lane([](double x) { return std::sin(x); }, a);
+}
+inline Four cos(Four a) {
+  return by_lane([](double x) { return std::cos(x); }, a);
+}
+inline Four sqrt(Four a) {
+  return by_lane([](double x) { return std::sqrt(x); }, a);
+}  // one instruction with AVX
+
+/// Are all lanes below the bound? No where one is not a number.
+inline bool all_below(double x, double bound) { return x < bound; }
+inline bool all_below(Four a, double bound) { return a[0] < bound && a[1] < bound && a[2] < bound && a[3] < bound; }
+
+/// Four entries from `first` on; beyond the end the last one.
+inline Four load(const std::vector<double>& from, std::size_t first) {
+  Four a;
+  if (first + 4 <= from.size()) {
+    std::memcpy(&a, from.data() + first, sizeof a);
+    return a;
+  }
+  const auto at = [&](std::size_t i) { return i < from.size() ? from[i] : from.back(); };
+  return Four{at(first), at(first + 1), at(first + 2), at(first + 3)};
+}
+
+inline void store(Four a, double* to) { std::memcpy(to, &a, sizeof a); }
 
 }  // namespace wunderlich::math

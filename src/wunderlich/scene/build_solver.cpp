@@ -128,12 +128,12 @@ solver::implicit::Options implicit_of(const Cell& cell) {
   using solver::implicit::Integrator;
   using solver::implicit::KineticEnergy;
   solver::implicit::Options options;
-  options.integrator = chosen<Integrator>(child(cell, "integrator"), {{"generalised-alpha", Integrator::generalised_alpha},
-                                                                      {"bdf2", Integrator::bdf2},
-                                                                      {"euler", Integrator::euler}});
-  options.kinetic = chosen<KineticEnergy>(child(cell, "kinetic_energy"), {{"centerline", KineticEnergy::centerline},
-                                                                          {"rotary", KineticEnergy::rotary},
-                                                                          {"full", KineticEnergy::full}});
+  options.integrator = chosen<Integrator>(
+      child(cell, "integrator"),
+      {{"generalised-alpha", Integrator::generalised_alpha}, {"bdf2", Integrator::bdf2}, {"euler", Integrator::euler}});
+  options.kinetic = chosen<KineticEnergy>(
+      child(cell, "kinetic_energy"),
+      {{"centerline", KineticEnergy::centerline}, {"rotary", KineticEnergy::rotary}, {"full", KineticEnergy::full}});
   const Cell iterations = child(cell, "max_iterations"), damping = child(cell, "damping");
   options.tolerance = number_or(child(cell, "tolerance"), options.tolerance);
   if (iterations.value != nullptr) options.max_iterations = static_cast<int>(integer(iterations));
@@ -164,10 +164,9 @@ const char* method_name(Method method) {
 }
 
 Method method_of(const Cell& root) {
-  return chosen<Method>(child(child(root, "solver"), "method"),
-                        {{"implicit", Method::implicit},
-                         {"two-stage", Method::two_stage},
-                         {"equilibrium", Method::equilibrium}});
+  return chosen<Method>(
+      child(child(root, "solver"), "method"),
+      {{"implicit", Method::implicit}, {"two-stage", Method::two_stage}, {"equilibrium", Method::equilibrium}});
 }
 
 SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key) {

@@ -4,7 +4,7 @@ namespace wunderlich::scene {
 
 namespace {
 
-constexpr double long_time = 1e9;   // s
+constexpr double long_time = 1e9;  // s
 
 const std::vector<Key> table = {
     {"solver", Type::map, "", 0, 0, "", {}, "How the state is found."},
@@ -15,7 +15,8 @@ const std::vector<Key> table = {
      0,
      "implicit",
      {"implicit", "two-stage", "equilibrium"},
-     "`implicit`: dynamics by one minimisation a step, with every internal constraint held exactly. `two-stage`: dynamics "
+     "`implicit`: dynamics by one minimisation a step, with every internal constraint held exactly. `two-stage`: "
+     "dynamics "
      "by the paper's Algorithm 1. `equilibrium`: Newton's method along a path of static loads; time is the load "
      "parameter."},
     {"solver.energy",
@@ -158,7 +159,8 @@ const std::vector<Key> table = {
      1,
      "",
      {},
-     "Two-stage: instead of the rates, the paper's factor mu_t on the velocity along the tangent, once a substep. Where only one "
+     "Two-stage: instead of the rates, the paper's factor mu_t on the velocity along the tangent, once a substep. "
+     "Where only one "
      "of the two factors is given the other is the paper's: 0.85 along, 0.98 across."},
     {"solver.damping.factor_normal", Type::number, "", 0, 1, "", {}, "The same across it, mu_nt."},
     {"solver.steps", Type::integer, "", 0, 1e6, "0", {}, "Load steps of the path; 0: as few as it takes."},
@@ -178,7 +180,8 @@ const std::vector<Key> table = {
      1e-2,
      "",
      {},
-     "Converged when Newton's step is below it: rotations in rad, displacements over the length. Default 1e-10; implicit "
+     "Converged when Newton's step is below it: rotations in rad, displacements over the length. Default 1e-10; "
+     "implicit "
      "1e-6, a step which is still taken."},
     {"solver.max_iterations",
      Type::integer,

@@ -17,8 +17,8 @@ namespace wunderlich::scene {
 using geometry::Ribbon;
 namespace {
 
-constexpr int kMaxHalvings = 8;        // of a step that fails
-constexpr int kRestingSteps = 20;      // below the speed of rest, before a motion is over
+constexpr int kMaxHalvings = 8;    // of a step that fails
+constexpr int kRestingSteps = 20;  // below the speed of rest, before a motion is over
 
 /// Which ends of an open strip have a frame of their own: those that a clamp holds at this time.
 std::array<bool, 2> clamped_at(const Scene& scene, double time) {

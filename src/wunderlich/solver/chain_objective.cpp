@@ -6,6 +6,8 @@
 
 #include "wunderlich/energy/joint_energy.hpp"
 #include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/chain_rows.hpp"
+#include "wunderlich/solver/chain_ties.hpp"
 
 namespace wunderlich::solver {
 
@@ -17,207 +19,108 @@ using geometry::Ribbon;
 using math::ChainLink;
 using math::ChainRow;
 using math::ChainSystem;
+using math::Four;
 
 namespace {
 
 double rigidity(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width; }
 
-/// e1 D l_s/w of one segment.
-double barrier_weight(const Ribbon& ribbon, const ChainProblem& problem, std::size_t segment) {
-  return problem.barrier * ribbon.bending_stiffness * ribbon.rest_length[segment] / ribbon.width;
-}
-
-/// A node as an end of a link; the weight depends on the link.
-energy::LinkEnd link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                         std::size_t node) {
-  const double h = geometry::fold_length(ribbon, node), kappa = chain.kappa[node], eta = chain.eta[node];
-  return {kappa, eta, energy::bending(problem.model.strain, h, kappa, eta, k.fold[node]), 0};
-}
-
-/// Half the link belongs to each end's hinge, nothing where there is none.
-double end_weight(const Ribbon& ribbon, std::size_t link, std::size_t node) {
-  return geometry::fold_length(ribbon, node) > 0 ? 0.5 * rigidity(ribbon) * ribbon.rest_length[link] : 0.0;
-}
-
-/// Turn of the frame `q` about its tangent against `reference` transported along the shortest rotation of the
-/// tangent, and the row that is its gradient.                                            @eq Shen2015:18
-struct TangentTurn {
-  double angle = 0;
-  Vec3 gradient = Vec3::Zero();
+/// Four links from `first` on: both ends of each, and what depends on the link alone. What is said of links beyond the
+/// last is finite and means nothing.
+struct FourLinks {
+  energy::LinkEnd<Four> a, b;
+  energy::LinkQuadrature<Four> rule;
+  Four slope;           ///< x = slope (eta_b - eta_a), w/(2 l)
+  Four x;               ///< ruling ratio
+  Four weight;          ///< D w l/2
+  Four barrier_weight;  ///< e1 D l/w
 };
 
-TangentTurn tangent_turn(const Quat& q, const Quat& reference) {
-  const Vec3 t0 = reference * Vec3::UnitZ(), t1 = q * Vec3::UnitZ();
-  const Quat carried = math::shortest_rotation(t0, t1) * reference;
-  const Vec3 turn = math::log_map(q * carried.conjugate());
-  return {turn.dot(t1), (t0 + t1) / (1 + t0.dot(t1))};
+inline energy::LinkEnd<Four> link_end(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain,
+                                      const geometry::Fold<Four>& fold, std::size_t first) {
+  const Four kappa = math::load(chain.kappa, first), eta = math::load(chain.eta, first);
+  const Four h = geometry::fold_lengths(ribbon, first);
+  return {{kappa, eta}, energy::bending(problem.model.strain, h, kappa, eta, fold)};
 }
 
-/// Calls `emit(v, theta, residual)` for each row of a hold.
-template <class Emit>
-void for_each_row(const Hold& hold, const Chain& chain, const Kinematics& k, const Emit& emit) {
-  const auto i = static_cast<std::size_t>(hold.node);
-  const Vec3 gap = k.r[i] - hold.target.position;
-  for (int c = 0; c < 3; ++c) {
-    if (hold.position[static_cast<std::size_t>(c)]) emit(Vec3::Unit(c), Vec3::Zero(), gap[c]);
-  }
-  if (hold.orientation == Orientation::full) {
-    // The step's total rotation is exactly minus this vector, so the row is linear.
-    const Vec3 turn = math::log_map(k.q[i] * hold.target.frame.conjugate());
-    for (int c = 0; c < 3; ++c) emit(Vec3::Zero(), Vec3::Unit(c), turn[c]);
-  } else if (hold.orientation == Orientation::about_tangent) {
-    const TangentTurn turn = tangent_turn(hold.on_base ? chain.base.frame : k.q[i], hold.target.frame);
-    emit(Vec3::Zero(), turn.gradient, turn.angle);
-  }
-}
-
-/// The last frame is the first one seen across the seam, and so are kappa and eta.
-struct Closure {
-  Vec3 gap;
-  Vec3 turn;
-  Vec2 u;
-};
-
-Closure closure(const Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
-  const Quat ghost = geometry::across_seam(ribbon, k.q.front());
-  return {k.r.back() - k.r.front(), math::log_map(k.q.back() * ghost.conjugate()),
-          Vec2(chain.kappa.back() - ribbon.seam_sign() * chain.kappa.front(),
-               chain.eta.back() - ribbon.seam_sign() * chain.eta.front())};
+inline FourLinks four_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                            std::size_t first) {
+  const Four length = math::load(ribbon.rest_length, first);
+  const auto& here = k.fold[first / 4];
+  const auto& next = k.fold[std::min(first / 4 + 1, k.fold.size() - 1)];
+  FourLinks links;
+  links.a = link_end(ribbon, problem, chain, here, first);
+  links.b = link_end(ribbon, problem, chain, geometry::moved_on(here, next), first + 1);
+  links.rule = energy::four_quadratures(ribbon, problem.model, first);
+  links.slope = 0.5 * ribbon.width / length;
+  links.x = links.slope * (links.b.at.eta - links.a.at.eta);
+  links.weight = 0.5 * rigidity(ribbon) * length;
+  links.barrier_weight = problem.barrier * ribbon.bending_stiffness / ribbon.width * length;
+  return links;
 }
 
 Vec3 in_space(const PointLoad& load, const Vec3& vector, const Quat& frame) {
   return load.frame == LoadFrame::space ? vector : Vec3(frame * vector);
 }
 
-/// Stiffness of the penalty that makes pivots a valid second-order test: far above the strip's own
-/// D w / l^3 (positions) and D w / l (rotations).
-struct Penalty {
-  double position, rotation;
-};
-
-Penalty penalties(const Ribbon& ribbon) {
-  const double position = 1e4 * rigidity(ribbon) / (ribbon.length * ribbon.length * ribbon.length);
-  return {position, position * ribbon.length * ribbon.length / 40};
-}
-
-void append_rows(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                 const std::vector<double>& multipliers, std::vector<ChainRow>& rows) {
-  const Penalty penalty = penalties(ribbon);
-  const std::size_t probes = rows.size();
-  const auto push = [&](ChainRow row) {
-    row.multiplier = multipliers[rows.size() - probes];
-    rows.push_back(row);
+/// Joints of `count` nodes from `first` on.
+inline void fill_joints(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t first,
+                        std::size_t count, ChainLink* links) {
+  const auto d = geometry::fold_derivatives(k.fold[first / 4], geometry::fold_lengths(ribbon, first),
+                                            math::load(chain.kappa, first), math::load(chain.eta, first));
+  const auto fill = [&](const Mat3& before, int lane, ChainLink& link) {
+    const Four d1 = math::four(before.col(0)), d2 = math::four(before.col(1)), d3 = math::four(before.col(2));
+    const auto in_space = [&](const geometry::InFrame<Four>& v) -> Vec3 {
+      return math::first_three(math::all(v.x[lane]) * d1 + math::all(v.y[lane]) * d2 + math::all(v.z[lane]) * d3);
+    };
+    link.axes.col(0) = in_space(d.kappa);
+    link.axes.col(1) = in_space(d.eta);
+    link.axes_01 = in_space(d.kappa_eta);
+    link.axes_11 = in_space(d.eta_eta);
   };
-  if (problem.closed) {
-    const Closure gap = closure(ribbon, chain, k);
-    // With a floating base the penalty would couple it to the last node; the recursion has no room for that.
-    const bool floating = !problem.base_fixed[0] || !problem.base_fixed[3];
-    for (int c = 0; c < 8; ++c) {
-      ChainRow row;
-      row.node = ribbon.segments;
-      if (c < 3) {
-        row.v = Vec3::Unit(c);
-        row.base_v = -row.v;
-        row.residual = gap.gap[c];
-        row.penalty = floating ? 0 : penalty.position;
-      } else if (c < 6) {
-        row.theta = Vec3::Unit(c - 3);
-        row.base_theta = -row.theta;
-        row.residual = gap.turn[c - 3];
-        row.penalty = floating ? 0 : penalty.rotation;
-      } else {
-        row.u = Vec2::Unit(c - 6);
-        row.first_u = -ribbon.seam_sign() * row.u;
-        row.residual = gap.u[c - 6];
-      }
-      push(row);
-    }
-  }
-  for (const Hold& hold : problem.holds) {
-    for_each_row(hold, chain, k, [&](const Vec3& v, const Vec3& theta, double residual) {
-      ChainRow row;
-      row.node = hold.node;
-      row.v = v;
-      row.residual = residual;
-      (hold.on_base ? row.base_theta : row.theta) = theta;
-      // Rows on the base need none: its pivots are those of a small matrix, counted exactly.
-      if (!v.isZero())
-        row.penalty = penalty.position;
-      else if (!hold.on_base)
-        row.penalty = penalty.rotation;
-      push(row);
-    });
-  }
+  // Axes are given before the fold; carry them with the frame before it.
+  if (first == 0) fill(chain.base.frame.toRotationMatrix(), 0, links[0]);
+  for (std::size_t j = first == 0 ? 1 : 0; j < count; ++j) fill(k.frame[first + j - 1], static_cast<int>(j), links[j]);
 }
 
-void fill_joint(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t i, ChainLink& link) {
-  const double h = ribbon.hinge_length[i];
-  if (h == 0) {
-    link.axes.setZero();
-    link.axes_01.setZero();
-    link.axes_11.setZero();
-    return;
-  }
-  // Axes are given before the fold; carry them with the frame before it: q_{i-1} = q_i fold^-1.
-  const geometry::FoldDerivatives d = geometry::fold_derivatives(k.fold[i], h, chain.kappa[i], chain.eta[i]);
-  const Mat3 base = i > 0 ? Mat3() : Mat3(chain.base.frame.toRotationMatrix());
-  const Mat3& before = i > 0 ? k.frame[i - 1] : base;
-  const math::Four d1 = math::four(before.col(0)), d2 = math::four(before.col(1)), d3 = math::four(before.col(2));
-  const auto in_space = [&](const Vec3& v) -> Vec3 {
-    return math::first_three(math::all(v[0]) * d1 + math::all(v[1]) * d2 + math::all(v[2]) * d3);
-  };
-  link.axes.col(0) = in_space(d.kappa);
-  link.axes.col(1) = in_space(d.eta);
-  link.axes_01 = in_space(d.kappa_eta);
-  link.axes_11 = in_space(d.eta_eta);
+void still_joint(ChainLink& link) {
+  link.axes.setZero();
+  link.axes_01.setZero();
+  link.axes_11.setZero();
 }
 
-void fill_node(const ChainProblem& problem, const Kinematics& k, std::size_t i, ChainLink& link) {
-  link.stiffness = problem.tie.empty() ? 0 : problem.tie[i];
+void fill_node(const ChainProblem& problem, std::size_t i, ChainLink& link) {
+  link.stiffness = 0;
   link.force = -problem.force[i];
-  if (!problem.tie.empty()) link.force += link.stiffness * (k.r[i] - problem.anchor[i]);
 }
 
-void fill_link(const Ribbon& ribbon, const ChainProblem& problem, std::size_t i, const energy::LinkEnd& a,
-               const energy::LinkEnd& b, ChainLink& link) {
-  const double slope = 0.5 * ribbon.width / ribbon.rest_length[i], x = slope * (b.eta - a.eta);
-  const double e1 = barrier_weight(ribbon, problem, i);
-  energy::WidthFactor barrier = energy::ruling_barrier(x);
-  barrier.value *= e1;
-  barrier.first *= e1;
-  barrier.second *= e1;
-  const energy::LinkEnergy e = energy::link_energy(energy::width_factor(problem.model, x), barrier, slope,
-                                                   energy::quadrature(ribbon, problem.model, i), a, b);
-  link.grad_a = e.grad_a;
-  link.grad_b = e.grad_b;
-  link.hess_aa = e.hess_aa;
-  link.hess_ab = e.hess_ab;
-  link.hess_bb = e.hess_bb;
-}
-
-/// Bending of the hinge at node i beyond what it was before the step.
-energy::Bending bent(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                     std::size_t i) {
-  const double h = ribbon.hinge_length[i], kappa = problem.before->kappa[i], eta = problem.before->eta[i];
-  energy::Bending g = energy::bending(problem.model.strain, h, chain.kappa[i], chain.eta[i], k.fold[i]);
-  g.value -= energy::bending(problem.model.strain, h, kappa, eta, geometry::make_fold(h, kappa, eta)).value;
-  return g;
-}
-
-/// Kelvin and Voigt's dashpots on the hinges.
-void add_viscosity(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                   std::vector<ChainLink>& links) {
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (ribbon.hinge_length[i] == 0) continue;
-    const energy::Bending g = bent(ribbon, problem, chain, k, i);
-    const double c = problem.viscosity * rigidity(ribbon) * ribbon.hinge_length[i], f = c * g.value;
-    Mat2 hessian;
-    hessian << c * g.kappa * g.kappa + f * g.kappa_kappa, c * g.kappa * g.eta + f * g.kappa_eta,
-        c * g.kappa * g.eta + f * g.kappa_eta, c * g.eta * g.eta + f * g.eta_eta;
-    ChainLink& link = links[i > 0 ? i - 1 : 0];
-    (i > 0 ? link.grad_b : link.grad_a) += f * Vec2(g.kappa, g.eta);
-    (i > 0 ? link.hess_bb : link.hess_aa) += hessian;
-  }
+/// Energy derivatives of `count` links from `first` on.
+inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                       std::size_t first, std::size_t count, ChainLink* links) {
+  const FourLinks four = four_links(ribbon, problem, chain, k, first);
+  const energy::WidthFactor<Four> wall = energy::ruling_barrier(four.x);
+  // Nothing asks for values here, and a logarithm is dear.
+  const energy::WidthFactor<Four> barrier{math::all(0), four.barrier_weight * wall.first,
+                                          four.barrier_weight * wall.second};
+  const energy::LinkEnergy<Four> e = energy::link_energy(energy::width_factor(problem.model, four.x), barrier,
+                                                         four.slope, four.rule, four.weight, four.a, four.b);
+  const auto scatter = [&](Four p, Four q, Four r, Four s, const auto& take) {
+    math::transpose4(p, q, r, s);
+    const Four rows[] = {p, q, r, s};
+    for (std::size_t j = 0; j < count; ++j) take(links[j], rows[j]);
+  };
+  const auto &aa = e.hess_aa, &bb = e.hess_bb;
+  const auto& ab = e.hess_ab;
+  scatter(e.grad_a.kappa, e.grad_a.eta, e.grad_b.kappa, e.grad_b.eta, [](ChainLink& link, Four row) {
+    link.grad_a = {row[0], row[1]};
+    link.grad_b = {row[2], row[3]};
+  });
+  scatter(aa.kappa_kappa, aa.kappa_eta, aa.kappa_eta, aa.eta_eta,
+          [](ChainLink& link, Four row) { math::store(row, link.hess_aa.data()); });
+  scatter(ab.kappa_kappa, ab.eta_kappa, ab.kappa_eta, ab.eta_eta,
+          [](ChainLink& link, Four row) { math::store(row, link.hess_ab.data()); });
+  scatter(bb.kappa_kappa, bb.kappa_eta, bb.kappa_eta, bb.eta_eta,
+          [](ChainLink& link, Four row) { math::store(row, link.hess_bb.data()); });
 }
 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
@@ -259,40 +162,10 @@ math::Mat6 follower_stiffness(const PointLoad& load, const Quat& frame) {
   return k;
 }
 
-/// Middle, d3 and d2 of segment i as columns.
-Mat3 facet_of(const Ribbon& ribbon, const Kinematics& k, std::size_t i) {
-  Mat3 facet;
-  facet << k.r[i] + 0.5 * ribbon.rest_length[i] * k.frame[i].col(2), k.frame[i].col(2), k.frame[i].col(1);
-  return facet;
-}
-
-/// Each column of a facet moves by theta x arm, the middle by v as well; the arms turn with the facet.
-math::PoseTerm facet_term(const Ribbon& ribbon, const FacetTie& tie, const Kinematics& k, std::size_t i) {
-  const Mat3 facet = facet_of(ribbon, k, i), force = (facet - tie.anchor) * tie.weight;
-  Mat3 arm = facet;
-  arm.col(0) -= k.r[i];
-  math::PoseTerm term;
-  term.node = static_cast<int>(i);
-  Vec3 torque = Vec3::Zero();
-  Mat3 products = Mat3::Zero(), forces = Mat3::Zero();
-  for (int a = 0; a < 3; ++a) {
-    torque += arm.col(a).cross(force.col(a));
-    forces += arm.col(a) * force.col(a).transpose();
-  }
-  products = arm * tie.weight * arm.transpose();
-  term.gradient << force.col(0), torque;
-  term.hessian.topLeftCorner<3, 3>() = tie.weight(0, 0) * Mat3::Identity();
-  term.hessian.topRightCorner<3, 3>() = -math::skew(arm * tie.weight.col(0));
-  term.hessian.bottomLeftCorner<3, 3>() = term.hessian.topRightCorner<3, 3>().transpose();
-  term.hessian.bottomRightCorner<3, 3>() = products.trace() * Mat3::Identity() - products;
-  term.geometric = 0.5 * (forces + forces.transpose()) - forces.trace() * Mat3::Identity();
-  return term;
-}
-
 /// Keeps the terms sorted by decreasing node.
 void insert(const math::PoseTerm& term, std::vector<math::PoseTerm>& terms) {
-  const auto after = std::upper_bound(terms.begin(), terms.end(), term,
-                                      [](const auto& a, const auto& b) { return a.node > b.node; });
+  const auto after =
+      std::upper_bound(terms.begin(), terms.end(), term, [](const auto& a, const auto& b) { return a.node > b.node; });
   terms.insert(after, term);
 }
 
@@ -319,49 +192,22 @@ void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics
 
 }  // namespace
 
-std::size_t row_count(const Hold& hold) {
-  std::size_t count = 0;
-  for (const bool held : hold.position) count += held ? 1 : 0;
-  if (hold.orientation == Orientation::full) count += 3;
-  if (hold.orientation == Orientation::about_tangent) count += 1;
-  return count;
-}
-
-std::size_t row_count(const ChainProblem& problem) {
-  std::size_t count = problem.closed ? 8 : 0;
-  for (const Hold& hold : problem.holds) count += row_count(hold);
-  return count;
-}
-
 ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                          const Kinematics& reference) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   ObjectiveValue value;
-  energy::LinkEnd b = link_end(ribbon, problem, chain, k, 0);
-  for (std::size_t s = 0; s < n; ++s) {
-    energy::LinkEnd a = b;
-    b = link_end(ribbon, problem, chain, k, s + 1);
-    a.weight = end_weight(ribbon, s, s);
-    b.weight = end_weight(ribbon, s, s + 1);
-    const double x = 0.5 * ribbon.width * (b.eta - a.eta) / ribbon.rest_length[s];
-    value.elastic += energy::link_bending(energy::quadrature(ribbon, problem.model, s), a, b) *
-                     energy::width_factor(problem.model, x).value;
-    value.barrier += barrier_weight(ribbon, problem, s) * energy::ruling_barrier(x).value;
+  for (std::size_t first = 0; first < n; first += 4) {
+    const FourLinks four = four_links(ribbon, problem, chain, k, first);
+    const Four elastic = energy::link_bending(four.rule, four.weight, four.a, four.b) *
+                         energy::width_factor(problem.model, four.x).value;
+    const Four barrier = four.barrier_weight * energy::ruling_barrier(four.x).value;
+    for (std::size_t j = 0; j < std::min<std::size_t>(4, n - first); ++j) {
+      value.elastic += elastic[static_cast<int>(j)];
+      value.barrier += barrier[static_cast<int>(j)];
+    }
   }
   for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i] - reference.r[i]);
-  for (std::size_t i = 0; i < problem.tie.size(); ++i) {
-    value.rest += 0.5 * problem.tie[i] * (k.r[i] - problem.anchor[i]).squaredNorm();
-  }
-  for (std::size_t i = 0; i < problem.facets.size(); ++i) {
-    const FacetTie& tie = problem.facets[i];
-    const Mat3 gap = facet_of(ribbon, k, i) - tie.anchor;
-    value.rest += 0.5 * (tie.weight * gap.transpose() * gap).trace();
-  }
-  for (std::size_t i = 0; problem.viscosity > 0 && i <= n; ++i) {
-    if (ribbon.hinge_length[i] == 0) continue;
-    const double g = bent(ribbon, problem, chain, k, i).value;
-    value.rest += 0.5 * problem.viscosity * rigidity(ribbon) * ribbon.hinge_length[i] * g * g;
-  }
+  value.rest += tie_value(ribbon, problem, chain, k);
   for (const PointLoad& load : problem.loads) {
     const auto i = static_cast<std::size_t>(std::max(load.node, 0));
     const Quat& frame = reference.q[i];
@@ -372,47 +218,28 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
   return value;
 }
 
-void constraint_residuals(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-                          std::vector<double>& residuals) {
-  residuals.clear();
-  if (problem.closed) {
-    const Closure gap = closure(ribbon, chain, k);
-    residuals.insert(residuals.end(), gap.gap.begin(), gap.gap.end());
-    residuals.insert(residuals.end(), gap.turn.begin(), gap.turn.end());
-    residuals.insert(residuals.end(), gap.u.begin(), gap.u.end());
-  }
-  for (const Hold& hold : problem.holds) {
-    for_each_row(hold, chain, k, [&](const Vec3&, const Vec3&, double residual) { residuals.push_back(residual); });
-  }
-}
-
 void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                const std::vector<double>& multipliers, ChainSystem& system) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
-  energy::LinkEnd b = link_end(ribbon, problem, chain, k, 0);
-  for (std::size_t i = 0; i <= n; ++i) {
-    ChainLink& link = system.links[i];
-    fill_joint(ribbon, chain, k, i, link);
-    fill_node(problem, k, i, link);
-    if (i == n) break;
-    energy::LinkEnd a = b;
-    b = link_end(ribbon, problem, chain, k, i + 1);
-    a.weight = end_weight(ribbon, i, i);
-    b.weight = end_weight(ribbon, i, i + 1);
-    fill_link(ribbon, problem, i, a, b, link);
-    link.span = ribbon.rest_length[i] * k.frame[i].col(2);
+  for (std::size_t first = 0; first <= n; first += 4) {
+    ChainLink* const links = system.links.data() + first;
+    fill_joints(ribbon, chain, k, first, std::min<std::size_t>(4, n + 1 - first), links);
+    if (first < n) fill_links(ribbon, problem, chain, k, first, std::min<std::size_t>(4, n - first), links);
   }
-  if (problem.viscosity > 0) add_viscosity(ribbon, problem, chain, k, system.links);
+  for (std::size_t i = 0; i <= n; ++i) {
+    fill_node(problem, i, system.links[i]);
+    if (i < n) system.links[i].span = ribbon.rest_length[i] * k.frame[i].col(2);
+  }
+  // A loop's first joint shares its energy and turns nothing.
+  if (ribbon.hinge_length[0] == 0) still_joint(system.links[0]);
+  system.rows.clear();
+  system.pose_terms.clear();
+  add_ties(ribbon, problem, chain, k, system);
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);
     if (!geometry::eta_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 1);
-  }
-  system.rows.clear();
-  system.pose_terms.clear();
-  for (std::size_t i = problem.facets.size(); i-- > 0;) {
-    system.pose_terms.push_back(facet_term(ribbon, problem.facets[i], k, i));
   }
   add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);

@@ -41,17 +41,17 @@ struct FacetTie {
 /// loops, the closure. Ties are a proximal term in statics and the inertia of a step in dynamics.
 struct ChainProblem {
   energy::Model model;
-  double barrier = 1e-6;             ///< e1: e1 D sum over segments of (l_s/w) (-ln(1 - x^2))
-  std::vector<Vec3> force;           ///< (segments + 1) dead force on each node [N]
-  std::vector<PointLoad> loads;      ///< sorted by decreasing node
-  std::vector<double> tie;           ///< (segments + 1) or none: (tie/2) |r - anchor|^2 of each node [N/m]
-  std::vector<Vec3> anchor;          ///< (segments + 1) or none
-  std::vector<FacetTie> facets;      ///< (segments) or none
-  double viscosity = 0;              ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
+  double barrier = 1e-6;                    ///< e1: e1 D sum over segments of (l_s/w) (-ln(1 - x^2))
+  std::vector<Vec3> force;                  ///< (segments + 1) dead force on each node [N]
+  std::vector<PointLoad> loads;             ///< sorted by decreasing node
+  std::vector<double> tie;                  ///< (segments + 1) or none: (tie/2) |r - anchor|^2 of each node [N/m]
+  std::vector<Vec3> anchor;                 ///< (segments + 1) or none
+  std::vector<FacetTie> facets;             ///< (segments) or none
+  double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
   const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0
-  std::vector<Hold> holds;           ///< sorted by decreasing node
-  bool closed = false;               ///< the loop's closure is a constraint
-  std::array<bool, 6> base_fixed{};  ///< position and rotation of the base
+  std::vector<Hold> holds;                  ///< sorted by decreasing node
+  bool closed = false;                      ///< the loop's closure is a constraint
+  std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
 };
 
 /// Number of constraint rows: the closure's first, then those of each hold in turn.

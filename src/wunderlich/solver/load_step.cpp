@@ -51,8 +51,8 @@ Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index,
 /// Keeps holds and loads sorted by decreasing node.
 template <class Item>
 void insert(const Item& item, std::vector<Item>& items) {
-  const auto after = std::upper_bound(items.begin(), items.end(), item,
-                                      [](const Item& a, const Item& b) { return a.node > b.node; });
+  const auto after =
+      std::upper_bound(items.begin(), items.end(), item, [](const Item& a, const Item& b) { return a.node > b.node; });
   items.insert(after, item);
 }
 

@@ -35,8 +35,8 @@ struct NewtonReport {
   int negative_modes = 0;   ///< of the unshifted reduced Hessian where it stopped
   double max_residual = 0;  ///< of the constraint rows (m, rad, 1)
   double last_step = 0;
-  int worst_node = 0;       ///< where the last step was largest
-  ObjectiveValue value;     ///< `inertial`: at the end
+  int worst_node = 0;    ///< where the last step was largest
+  ObjectiveValue value;  ///< `inertial`: at the end
   bool converged() const { return outcome == NewtonOutcome::converged; }
 };
 

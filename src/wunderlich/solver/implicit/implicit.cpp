@@ -16,10 +16,10 @@ using geometry::Ribbon;
 namespace {
 
 constexpr std::array<double, 4> kRho{0.9, 0.6, 0.3, 0};  // what generalised-alpha leaves of the fastest oscillation
-constexpr double kGrowth = 1e-3;  // of the energy in one step, over the largest kinetic energy: more is no motion
+constexpr double kGrowth = 1e-3;       // of the energy in one step, over the largest kinetic energy: more is no motion
 constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
-constexpr int kCalmSteps = 50;    // before less damping is tried again
-constexpr double kProbe = 0.02;   // of the strip's own time: the step that finds accelerations
+constexpr int kCalmSteps = 50;         // before less damping is tried again
+constexpr double kProbe = 0.02;        // of the strip's own time: the step that finds accelerations
 constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
 
 /// Time in which a wave of bending crosses the strip.
@@ -238,9 +238,9 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     if (grows && can_damp(options, state)) continue;
     if (grows || (options.error > 0 && report.error > options.error)) {
       state.level = level;
-      report.failure = grows ? "the energy grows by " + std::to_string(growth) + " J in a step of " +
-                                   std::to_string(h) + " s"
-                             : "local error " + std::to_string(report.error);
+      report.failure =
+          grows ? "the energy grows by " + std::to_string(growth) + " J in a step of " + std::to_string(h) + " s"
+                : "local error " + std::to_string(report.error);
       return report;
     }
     state.peak = peak;

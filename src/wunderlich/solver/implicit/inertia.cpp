@@ -6,8 +6,8 @@ using geometry::Ribbon;
 
 namespace {
 
-/// Mass moments of segment s in the coordinates (1, s, t) of its plane, s along the centerline from its middle, t across:
-/// those of the trapezoid between the rulings of slopes eta[s] and eta[s + 1]. In the order middle, d3, d2.
+/// Mass moments of segment s in the coordinates (1, s, t) of its plane, s along the centerline from its middle, t
+/// across: those of the trapezoid between the rulings of slopes eta[s] and eta[s + 1]. In the order middle, d3, d2.
 Mat3 facet_moments(const Ribbon& ribbon, KineticEnergy kinetic, const std::vector<double>& eta, std::size_t s) {
   const double l = ribbon.rest_length[s], w = ribbon.width, across = ribbon.area_density * w * w * w / 12;
   Mat3 m = Mat3::Zero();

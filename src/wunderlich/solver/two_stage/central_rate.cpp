@@ -35,7 +35,7 @@ double central_elastic(const Ribbon& ribbon, const energy::Model& model, const g
     const auto node = static_cast<std::size_t>(work.hinges[h].node);
     const Difference d = difference_at(ribbon, node);
     const double x = d.slope * (d.after_sign * shape.eta[d.after] - shape.eta[d.before]);
-    const energy::WidthFactor phi = energy::width_factor(model, x);
+    const auto phi = energy::width_factor(model, x);
     const double kappa = work.strain[h][1], tau = work.strain[h][2], eta = shape.eta[node];
     const double weight = 0.5 * ribbon.bending_stiffness * ribbon.width * work.hinges[h].length;
     const double stretch = 2 + eta * eta, bending = kappa * kappa + tau * tau * stretch;
