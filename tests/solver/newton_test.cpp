@@ -61,10 +61,16 @@ ChainProblem random_problem(const Ribbon& ribbon, const energy::Model& model, Ra
   ChainProblem problem;
   problem.model = model;
   problem.barrier = 0.01;
-  problem.proximity = 3;
   for (int i = 0; i <= ribbon.segments; ++i) {
     problem.force.push_back(random.vector());
     problem.anchor.push_back(random.vector());
+    problem.tie.push_back(3 + random());
+  }
+  for (int i = 0; i < ribbon.segments; ++i) {
+    Mat3 root, anchor;
+    root << random.vector(), random.vector(), random.vector();
+    anchor << random.vector(), random.vector(), random.vector();
+    problem.facets.push_back({root * root.transpose(), anchor});
   }
   problem.loads = {{ribbon.segments, LoadFrame::material, random.vector(), random.vector()},
                    {3, LoadFrame::space, random.vector(), random.vector()}};

@@ -69,7 +69,7 @@ struct Linearised {
   explicit Linearised(const PathEnd& of) : end(of), chain(of.at.chain), multipliers(of.at.multipliers) {
     solver::PathState at = end.at;
     at.phase = solver::Phase::settle;
-    problem = solver::problem_at(end.path, at, end.path.options.duration, chain);
+    solver::problem_at(end.path, at, end.path.options.duration, chain, problem);
     multipliers.resize(solver::row_count(problem), 0.0);
     linearise_here();
   }

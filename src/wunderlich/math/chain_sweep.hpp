@@ -53,6 +53,7 @@ struct PoseTerm {
   int node;
   Vec6 gradient = Vec6::Zero();  ///< in (v, theta)
   Mat6 hessian = Mat6::Zero();
+  Mat3 geometric = Mat3::Zero();  ///< further Hessian in theta, of terms that carry forces
 };
 
 /// One linearised problem.

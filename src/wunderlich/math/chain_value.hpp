@@ -70,12 +70,13 @@ void add_row(const ChainRow& row, int k, double share, Value& value, Columns<Q>&
   value.gradient1 += row.multiplier * row.u[1];
 }
 
-inline void add_pose_term(const PoseTerm& term, double share, Value& value) {
+inline void add_pose_term(const PoseTerm& term, double share, bool geometric, Value& value) {
   for (int i = 0; i < 3; ++i) {
     value.vv[i] += four(term.hessian.block<1, 3>(i, 0).transpose());
     value.vt[i] += four(term.hessian.block<1, 3>(i, 3).transpose(), share * term.gradient[i]);
     value.tt[i] += four(term.hessian.block<1, 3>(3 + i, 3).transpose(), share * term.gradient[3 + i]);
   }
+  for (int i = 0; i < 3 && geometric; ++i) value.tt[i] += four(term.geometric.row(i).transpose());
   value.force += four(term.gradient.head<3>());
   value.torque += four(term.gradient.tail<3>());
 }
@@ -84,7 +85,7 @@ inline void add_pose_term(const PoseTerm& term, double share, Value& value) {
 template <int Q>
 void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Columns<Q>& columns) {
   for (; next.term < system.pose_terms.size() && system.pose_terms[next.term].node == node; ++next.term) {
-    add_pose_term(system.pose_terms[next.term], gradient_share(system), value);
+    add_pose_term(system.pose_terms[next.term], gradient_share(system), system.geometric, value);
   }
   const auto take = [&](std::size_t index) {
     add_row(system.rows[index], static_cast<int>(index), gradient_share(system), value, columns);

@@ -15,18 +15,24 @@ namespace {
 
 /// Keys that only one method reads; given with another they are a mistake worth telling.
 void check_use(const Cell& solver, Method method) {
-  const std::map<Method, std::vector<std::string>> own{
-      {Method::equilibrium, {"steps", "tolerance", "max_iterations", "barrier"}},
-      {Method::two_stage,
-       {"time_step", "stop_at_rest", "form", "projection", "minimiser", "weight_scale", "step_size", "substeps",
-        "torsional_inertia", "inertia_form", "damping"}}};
-  for (const auto& [owner, names] : own) {
+  using Methods = std::vector<Method>;
+  const Methods newton{Method::implicit, Method::equilibrium}, motion{Method::implicit, Method::two_stage};
+  const std::vector<std::pair<Methods, std::vector<std::string>>> own{
+      {{Method::equilibrium}, {"steps"}},
+      {newton, {"tolerance", "max_iterations", "barrier"}},
+      {motion, {"time_step", "stop_at_rest", "damping"}},
+      {{Method::implicit}, {"integrator", "kinetic_energy", "error"}},
+      {{Method::two_stage},
+       {"form", "projection", "minimiser", "weight_scale", "step_size", "substeps", "torsional_inertia",
+        "inertia_form"}}};
+  for (const auto& [owners, names] : own) {
+    if (std::find(owners.begin(), owners.end(), method) != owners.end()) continue;
     for (const std::string& name : names) {
       const Cell cell = child(solver, name);
-      if (owner != method && cell.value != nullptr) {
-        fail(cell, fmt::format("has no effect with `method: {}`; it belongs to `{}`", method_name(method),
-                               method_name(owner)));
-      }
+      if (cell.value == nullptr) continue;
+      const std::string others = owners.size() > 1 ? fmt::format("` and `{}", method_name(owners[1])) : "";
+      fail(cell, fmt::format("has no effect with `method: {}`; it belongs to `{}{}`", method_name(method),
+                             method_name(owners[0]), others));
     }
   }
 }
@@ -62,6 +68,9 @@ LoopPath loop_path_of(const Cell& solver, const geometry::RibbonSpec& ribbon) {
 void read_damping(const Cell& damping, two_stage::OdeOptions& ode) {
   const Cell tangent = child(damping, "tangent"), normal = child(damping, "normal");
   const Cell factor_tangent = child(damping, "factor_tangent"), factor_normal = child(damping, "factor_normal");
+  if (child(damping, "material").value != nullptr) {
+    fail(child(damping, "material"), "has no effect with `method: two-stage`; it belongs to `implicit`");
+  }
   const bool rates = tangent.value != nullptr || normal.value != nullptr;
   const bool factors = factor_tangent.value != nullptr || factor_normal.value != nullptr;
   if (rates && factors) fail(damping, "has rates and factors; give one of the two");
@@ -113,13 +122,51 @@ two_stage::Options two_stage_of(const Cell& cell, const energy::Model& model) {
   return options;
 }
 
+double number_or(const Cell& cell, double fallback) { return cell.value != nullptr ? number(cell) : fallback; }
+
+solver::implicit::Options implicit_of(const Cell& cell) {
+  using solver::implicit::Integrator;
+  using solver::implicit::KineticEnergy;
+  solver::implicit::Options options;
+  options.integrator = chosen<Integrator>(
+      child(cell, "integrator"),
+      {{"generalised-alpha", Integrator::generalised_alpha}, {"bdf2", Integrator::bdf2}, {"euler", Integrator::euler}});
+  options.kinetic = chosen<KineticEnergy>(
+      child(cell, "kinetic_energy"),
+      {{"centerline", KineticEnergy::centerline}, {"rotary", KineticEnergy::rotary}, {"full", KineticEnergy::full}});
+  const Cell iterations = child(cell, "max_iterations"), damping = child(cell, "damping");
+  options.tolerance = number_or(child(cell, "tolerance"), options.tolerance);
+  if (iterations.value != nullptr) options.max_iterations = static_cast<int>(integer(iterations));
+  options.error = number_or(child(cell, "error"), 0);
+  for (const char* factor : {"factor_tangent", "factor_normal"}) {
+    if (child(damping, factor).value != nullptr) {
+      fail(child(damping, factor), "depends on the step; the implicit method knows the rates `tangent` and `normal`");
+    }
+  }
+  options.drag_tangent = number(child(damping, "tangent"));
+  options.drag_normal = number(child(damping, "normal"));
+  options.viscosity = number(child(damping, "material"));
+  return options;
+}
+
 }  // namespace
 
-const char* method_name(Method method) { return method == Method::equilibrium ? "equilibrium" : "two-stage"; }
+const char* method_name(Method method) {
+  switch (method) {
+    case Method::implicit:
+      return "implicit";
+    case Method::two_stage:
+      return "two-stage";
+    case Method::equilibrium:
+      break;
+  }
+  return "equilibrium";
+}
 
 Method method_of(const Cell& root) {
-  return chosen<Method>(child(child(root, "solver"), "method"),
-                        {{"equilibrium", Method::equilibrium}, {"two-stage", Method::two_stage}});
+  return chosen<Method>(
+      child(child(root, "solver"), "method"),
+      {{"implicit", Method::implicit}, {"two-stage", Method::two_stage}, {"equilibrium", Method::equilibrium}});
 }
 
 SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key) {
@@ -135,18 +182,22 @@ SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon,
     fail(child(cell, "steps"), "counts the load steps of an open strip; a loop's path finds its own");
   }
   options.steps = static_cast<int>(integer(child(cell, "steps")));
-  options.tolerance = number(child(cell, "tolerance"));
-  options.max_iterations = static_cast<int>(integer(child(cell, "max_iterations")));
-  options.barrier = number(child(cell, "barrier"));
+  const Cell iterations = child(cell, "max_iterations");
+  options.tolerance = number_or(child(cell, "tolerance"), options.tolerance);
+  if (iterations.value != nullptr) options.max_iterations = static_cast<int>(integer(iterations));
+  options.barrier = number_or(child(cell, "barrier"), options.method == Method::implicit ? 1e-3 : options.barrier);
   options.time_step = number(child(cell, "time_step"));
   options.stop_at_rest = boolean(child(cell, "stop_at_rest"));
+  if (options.method == Method::implicit) options.implicit = implicit_of(cell);
   if (options.method == Method::two_stage) {
     options.two_stage = two_stage_of(cell, options.energy);
     options.energy = options.two_stage.model;
     if (ribbon.closure == geometry::Closure::loop && ribbon.segments < 5) {
       fail(child(child(root, "ribbon"), "segments"), "a loop in motion needs at least 5");
     }
-    if (options.duration / options.time_step > 1e8) fail(child(cell, "time_step"), "makes more than 1e8 steps");
+  }
+  if (options.method != Method::equilibrium && options.duration / options.time_step > 1e8) {
+    fail(child(cell, "time_step"), "makes more than 1e8 steps");
   }
   return options;
 }

@@ -11,11 +11,12 @@ namespace wunderlich::scene {
 
 namespace {
 
-/// Keys and choices of the published scene format that this version cannot do; they are no typing errors.
+/// Keys of the published scene format that this version cannot do; they are no typing errors.
 const std::vector<std::string> later_keys = {
-    "ribbons", "obstacles", "contact", "solver.integrator", "solver.kinetic_energy",
+    "ribbons",
+    "obstacles",
+    "contact",
 };
-const std::vector<std::string> later_methods = {"implicit"};
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -88,9 +89,6 @@ void check_choice(const Cell& cell, const Key& key) {
   const Value& value = *cell.value;
   if (value.kind != Value::Kind::scalar) fail_value(cell, key);
   if (contains(key.choices, value.text)) return;
-  if (key.path == "solver.method" && contains(later_methods, value.text)) {
-    fail_unsupported(cell.place, cell.path, fmt::format("the method `{}` is", value.text));
-  }
   const std::string guess = nearest(value.text, key.choices);
   fail_value(cell, key, guess.empty() ? "" : fmt::format("; did you mean `{}`?", guess));
 }

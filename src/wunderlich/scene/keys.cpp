@@ -13,7 +13,7 @@ constexpr double strong = 1e12;     // N, N m
 constexpr double long_time = 1e9;   // s
 constexpr double many_turns = 1e4;  // rad
 
-const std::vector<Key> table = {
+const std::vector<Key> before_solver = {
     {"title", Type::text, "", 0, 0, "", {}, "One line that says what the scene shows; `wunderlich scenes` prints it."},
 
     {"ribbon", Type::map, "", 0, 0, "", {}, "The strip."},
@@ -221,154 +221,9 @@ const std::vector<Key> table = {
     {"initial.slope", Type::number, "", -10, 10, "0", {}, "Of a coil: eta; the coil climbs when it is not 0."},
     {"initial.velocity", Type::vector, "m/s", -1e6, 1e6, "[0, 0, 0]", {}, "Velocity of the whole strip."},
     {"initial.spin", Type::vector, "rad/s", -1e6, 1e6, "[0, 0, 0]", {}, "Angular velocity about the center of mass."},
+};
 
-    {"solver", Type::map, "", 0, 0, "", {}, "How the state is found."},
-    {"solver.method",
-     Type::choice,
-     "",
-     0,
-     0,
-     "equilibrium",
-     {"equilibrium", "two-stage"},
-     "`equilibrium`: Newton's method along a path of static loads; time is the load parameter. `two-stage`: dynamics "
-     "by the paper's Algorithm 1."},
-    {"solver.energy",
-     Type::choice,
-     "",
-     0,
-     0,
-     "wunderlich",
-     {"wunderlich", "truncated", "sadowsky"},
-     "Exact bending energy of the strip, its series in the width up to `taylor_order`, or the limit of a narrow "
-     "strip."},
-    {"solver.taylor_order", Type::integer, "", 0, 100, "5", {}, "Order A of the truncated energy."},
-    {"solver.strain",
-     Type::choice,
-     "",
-     0,
-     0,
-     "logarithm",
-     {"logarithm", "printed"},
-     "Strain of a hinge: its rotation vector over its length, or the paper's (2/l) sin(angle/2)."},
-    {"solver.duration",
-     Type::number,
-     "s",
-     1e-9,
-     long_time,
-     "",
-     {},
-     "Time at which the motion ends; load parameter at the end of a path. Default: the last keyframe, or 1 without "
-     "keyframes."},
-    {"solver.time_step", Type::number, "s", 1e-9, 1e3, "0.01", {}, "Dynamics: length of a step."},
-    {"solver.stop_at_rest",
-     Type::boolean,
-     "",
-     0,
-     0,
-     "false",
-     {},
-     "Dynamics: end before `duration` once nothing moves."},
-    {"solver.form",
-     Type::choice,
-     "",
-     0,
-     0,
-     "repaired",
-     {"repaired", "printed"},
-     "Two-stage: `printed` is Algorithm 1 as the paper prints it; `repaired` mends what does not converge there."},
-    {"solver.projection",
-     Type::choice,
-     "",
-     0,
-     0,
-     "",
-     {"direct", "gauss-seidel"},
-     "Two-stage: how the constraints of frames and rulings are met. Default: `direct`, `gauss-seidel` for the printed "
-     "form."},
-    {"solver.minimiser",
-     Type::choice,
-     "",
-     0,
-     0,
-     "",
-     {"newton", "lbfgs"},
-     "Two-stage: how frames and rulings come to rest. Default: `newton`, `lbfgs` for the printed form."},
-    {"solver.weight_scale",
-     Type::number,
-     "",
-     1e-3,
-     1e6,
-     "10",
-     {},
-     "Two-stage: alpha, stiffness of the coupling of centerline and frames; the paper takes 10 to 100."},
-    {"solver.step_size", Type::number, "", 1e-6, 1, "", {}, "Two-stage: h of an L-BFGS step. Default 1; printed 0.05."},
-    {"solver.substeps",
-     Type::boolean,
-     "",
-     0,
-     0,
-     "",
-     {},
-     "Two-stage: divide steps that exceed the stability bound. Default true; printed false."},
-    {"solver.torsional_inertia",
-     Type::number,
-     "",
-     0,
-     1,
-     "",
-     {},
-     "Two-stage: Gamma, share of the inertia of turning about the centerline that is kept; 0: none. Default 1; printed "
-     "0."},
-    {"solver.inertia_form",
-     Type::choice,
-     "",
-     0,
-     0,
-     "physical",
-     {"physical", "printed"},
-     "Two-stage: whether that inertia's weight grows with the moment of inertia or, as printed, falls with it."},
-    {"solver.damping", Type::map, "", 0, 0, "", {}, "Two-stage: damping of the centerline's velocity."},
-    {"solver.damping.tangent", Type::number, "1/s", 0, 1e6, "0", {}, "Rate along the tangent."},
-    {"solver.damping.normal", Type::number, "1/s", 0, 1e6, "0", {}, "Rate across it."},
-    {"solver.damping.factor_tangent",
-     Type::number,
-     "",
-     0,
-     1,
-     "",
-     {},
-     "Instead of the rates, the paper's factor mu_t on the velocity along the tangent, once a substep. Where only one "
-     "of the two factors is given the other is the paper's: 0.85 along, 0.98 across."},
-    {"solver.damping.factor_normal", Type::number, "", 0, 1, "", {}, "The same across it, mu_nt."},
-    {"solver.steps", Type::integer, "", 0, 1e6, "0", {}, "Load steps of the path; 0: as few as it takes."},
-    {"solver.path",
-     Type::choice,
-     "",
-     0,
-     0,
-     "automatic",
-     {"automatic", "twist", "planar"},
-     "How a loop is made: bent to a ring, twisted at one end and closed; or bent in its plane to a figure-eight. "
-     "`automatic` takes `planar` for two half twists, else `twist`."},
-    {"solver.tolerance",
-     Type::number,
-     "",
-     1e-14,
-     1e-2,
-     "1e-10",
-     {},
-     "Converged when Newton's step is below it: rotations in rad, displacements over the length."},
-    {"solver.max_iterations", Type::integer, "", 1, 1e7, "2000", {}, "Newton iterations of one minimisation."},
-    {"solver.barrier",
-     Type::number,
-     "",
-     0,
-     1,
-     "1e-9",
-     {},
-     "Weight e1 of the final barrier e1 D sum (l/w) (-ln(1 - x^2)), l a segment's length, that keeps rulings from "
-     "meeting."},
-
+const std::vector<Key> after_solver = {
     {"output", Type::map, "", 0, 0, "", {}, "What the run folder holds."},
     {"output.frames", Type::integer, "", 1, 100000, "60", {}, "At most so many recorded frames."},
     {"output.subdivision", Type::integer, "", 1, 64, "3", {}, "Rendered strips a segment, along the length."},
@@ -385,9 +240,18 @@ const std::vector<Key> table = {
 
 }  // namespace
 
-const std::vector<Key>& keys() { return table; }
+const std::vector<Key>& keys() {
+  static const std::vector<Key> table = [] {
+    std::vector<Key> all = before_solver;
+    all.insert(all.end(), solver_keys().begin(), solver_keys().end());
+    all.insert(all.end(), after_solver.begin(), after_solver.end());
+    return all;
+  }();
+  return table;
+}
 
 const Key* find_key(const std::string& pattern) {
+  const std::vector<Key>& table = keys();
   const auto found = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == pattern; });
   return found == table.end() ? nullptr : &*found;
 }

@@ -9,21 +9,16 @@
 #include "wunderlich/energy/motion.hpp"
 #include "wunderlich/geometry/surface.hpp"
 #include "wunderlich/scene/drive.hpp"
-#include "wunderlich/scene/recording.hpp"
+#include "wunderlich/scene/mover.hpp"
 #include "wunderlich/scene/start.hpp"
-#include "wunderlich/solver/two_stage/two_stage.hpp"
 
 namespace wunderlich::scene {
 
 using geometry::Ribbon;
-using geometry::State;
-namespace two_stage = solver::two_stage;
-
 namespace {
 
-constexpr int kMaxHalvings = 8;        // of a step that fails
-constexpr double kManySubsteps = 100;  // in a step, of which a user should know
-constexpr int kRestingSteps = 20;      // below the speed of rest, before a motion is over
+constexpr int kMaxHalvings = 8;    // of a step that fails
+constexpr int kRestingSteps = 20;  // below the speed of rest, before a motion is over
 
 /// Which ends of an open strip have a frame of their own: those that a clamp holds at this time.
 std::array<bool, 2> clamped_at(const Scene& scene, double time) {
@@ -37,114 +32,81 @@ std::array<bool, 2> clamped_at(const Scene& scene, double time) {
   return clamped;
 }
 
-/// The counters of a run, beside the solver's own state.
-struct Counters {
-  double step = 0;  ///< of the scene's own steps
-  double taken = 0;
-  double iterations = 0;
-  double resting = 0;
-  double substeps = 0;
-  double exceeded = 0;  ///< steps beyond the stability bound
-};
-
-template <class Counters, class State, class Visit>
-void visit_cursor(Counters& counters, State& state, const Visit& visit) {
-  for (auto* c : {&counters.step, &counters.taken, &counters.iterations, &counters.resting, &counters.substeps,
-                  &counters.exceeded}) {
-    visit(*c);
-  }
-  const auto vectors = [&](auto& list) {
-    for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
-  };
-  const auto frames = [&](auto& list) {
-    for (auto& q : list) visit(q.x()), visit(q.y()), visit(q.z()), visit(q.w());
-  };
-  visit(state.shape.time);
-  vectors(state.shape.r);
-  vectors(state.shape.r_dot);
-  frames(state.shape.q);
-  for (auto& eta : state.shape.eta) visit(eta);
-  frames(state.shape.end_frame);
-  for (auto& spin : state.spin) visit(spin);
-  for (auto& multiplier : state.multipliers) visit(multiplier);
+std::unique_ptr<Mover> mover_of(const Scene& scene) {
+  return scene.solver.method == Method::two_stage ? two_stage_mover(scene) : implicit_mover(scene);
 }
 
 /// One run under way.
 struct Motion {
+  explicit Motion(const Scene& s) : scene(s), mover(mover_of(s)) {}
+
   const Scene& scene;
-  Ribbon ribbon;  ///< as it is held now
-  two_stage::State state;
-  two_stage::Workspace work;
+  std::unique_ptr<Mover> mover;
   Recording recording;
-  Counters counters;
-  double stable_step = 0;
+  long step = 0;  ///< of the scene's own steps
+  long taken = 0;
+  long iterations = 0;
+  long resting = 0;
   std::string failure;
 
   long step_count() const {
     return std::max(1L, std::lround(std::ceil(scene.solver.duration / scene.solver.time_step - 1e-9)));
   }
-  double time_of(long step) const {
-    return step >= step_count() ? scene.solver.duration : static_cast<double>(step) * scene.solver.time_step;
+  double time_of(long number) const {
+    return number >= step_count() ? scene.solver.duration : static_cast<double>(number) * scene.solver.time_step;
   }
 
-  void record(int iterations, double us) {
+  double time() const { return mover->shape().time; }
+
+  void record(int used, double us) {
+    const Ribbon& ribbon = mover->ribbon();
     Record entry;
-    entry.state = state.shape;
+    entry.state = mover->shape();
     HistoryRow& row = entry.history;
-    row.time = state.shape.time;
-    row.energy.elastic = energy::elastic_value(ribbon, scene.solver.energy, state.shape);
-    row.energy.kinetic = energy::kinetic_value(ribbon, state.shape);
-    row.energy.gravity = energy::gravity_value(ribbon, scene.surroundings.gravity, state.shape);
+    row.time = entry.state.time;
+    row.energy.elastic = energy::elastic_value(ribbon, scene.solver.energy, entry.state);
+    row.energy.kinetic = mover->kinetic_energy();
+    row.energy.gravity = energy::gravity_value(ribbon, scene.surroundings.gravity, entry.state);
     row.energy.normalized = normalized(ribbon, row.energy.elastic);
-    row.constraints = constraint::errors(ribbon, state.shape);
-    row.area_error = geometry::area_error(ribbon, state.shape);
-    row.iterations = iterations;
+    row.constraints = constraint::errors(ribbon, entry.state);
+    row.area_error = geometry::area_error(ribbon, entry.state);
+    row.iterations = used;
     row.step_us = us;
     recording.records.push_back(std::move(entry));
   }
 
-  /// Clamps that let go at this time leave their end without a frame of its own.
-  void release() {
-    if (clamped_at(scene, state.shape.time) == ribbon.clamped) return;
-    ribbon = motion_ribbon(scene, state.shape.time);
-    if (!ribbon.clamped[0]) state.shape.end_frame[0] = state.shape.q.front();
-    if (!ribbon.clamped[1]) state.shape.end_frame[1] = state.shape.q.back();
-  }
-
   /// From t0 to t1; a step that fails is tried again in halves.
-  bool advance(double t0, double t1, int halvings, int& iterations) {
-    const two_stage::Drive drive = drive_between(scene, ribbon, state.shape, t0, t1);
-    const two_stage::StepReport report = two_stage::step(ribbon, drive, scene.solver.two_stage, t1 - t0, state, work);
-    recording.add_phase_time("ode", report.ode_seconds);
-    recording.add_phase_time("opt", report.opt_seconds);
-    recording.add_phase_time("other", report.other_seconds);
-    stable_step = report.stable_step;
-    if (report.accepted) {
-      state.shape.time = t1;
-      release();
-      iterations += report.iterations;
-      counters.taken += 1;
-      counters.substeps += report.substeps;
-      counters.exceeded += report.exceeds_bound ? 1 : 0;
+  bool advance(double t0, double t1, int halvings, int& used) {
+    const Move move = mover->step(t0, t1, recording);
+    used += move.iterations;
+    if (move.accepted) {
+      ++taken;
       return true;
     }
-    failure = report.failure;
+    failure = move.failure;
     if (halvings == 0) return false;
     const double middle = 0.5 * (t0 + t1);
-    return advance(t0, middle, halvings - 1, iterations) && advance(middle, t1, halvings - 1, iterations);
+    return advance(t0, middle, halvings - 1, used) && advance(middle, t1, halvings - 1, used);
   }
 
   /// Up to t1, with a stop wherever a support lets go.
-  bool advance_to(double t1, int& iterations) {
-    while (state.shape.time < t1) {
-      const double t0 = state.shape.time;
+  bool advance_to(double t1, int& used) {
+    while (time() < t1) {
+      const double t0 = time();
       double next = t1;
       for (const constraint::Support& support : scene.surroundings.supports) {
         if (support.release > t0 * (1 + 1e-9) && support.release < next * (1 - 1e-9)) next = support.release;
       }
-      if (!advance(t0, next, kMaxHalvings, iterations)) return false;
+      if (!advance(t0, next, kMaxHalvings, used)) return false;
+      if (released(t0, next)) mover->release();
     }
     return true;
+  }
+
+  /// Has a support let go?
+  bool released(double t0, double t1) const {
+    const auto& supports = scene.surroundings.supports;
+    return std::any_of(supports.begin(), supports.end(), [&](const auto& s) { return holds(s, t0) && !holds(s, t1); });
   }
 
   /// When the last thing that the scene imposes has happened.
@@ -159,10 +121,11 @@ struct Motion {
   }
 
   /// Slower than a wave of bending would cross 1e-5 of the strip in the time it takes along the strip.
-  bool resting() const {
-    if (state.shape.time < last_event()) return false;
+  bool is_resting() const {
+    if (time() < last_event()) return false;
+    const Ribbon& ribbon = mover->ribbon();
     double fastest = 0;
-    for (const Vec3& v : state.shape.r_dot) fastest = std::max(fastest, v.norm());
+    for (const Vec3& v : mover->shape().r_dot) fastest = std::max(fastest, v.norm());
     return fastest < 1e-5 * std::sqrt(ribbon.bending_stiffness / ribbon.area_density) / ribbon.length;
   }
 
@@ -170,64 +133,43 @@ struct Motion {
     const long steps = step_count();
     const long most = std::max(1, scene.output.frames - 1);  // beside the start
     const long stride = std::max(1L, (steps + most - 1) / most);
-    while (static_cast<long>(counters.step) < steps) {
-      const auto step = static_cast<long>(counters.step) + 1;
+    while (step < steps) {
       const Stopwatch watch;
-      int iterations = 0;
-      if (!advance_to(time_of(step), iterations)) return Outcome::not_converged;
+      int used = 0;
+      if (!advance_to(time_of(step + 1), used)) return Outcome::not_converged;
+      ++step;
       const double us = 1e6 * watch.seconds();
       recording.timing.wall_seconds += 1e-6 * us;
       recording.step_us.push_back(us);
-      counters.step = static_cast<double>(step);
-      counters.iterations += iterations;
-      counters.resting = resting() ? counters.resting + 1 : 0;
-      const bool over = step == steps || (scene.solver.stop_at_rest && counters.resting >= kRestingSteps);
-      if (over || step % stride == 0) record(iterations, us);
+      iterations += used;
+      resting = is_resting() ? resting + 1 : 0;
+      const bool over = step == steps || (scene.solver.stop_at_rest && resting >= kRestingSteps);
+      if (over || step % stride == 0) record(used, us);
       if (over) return Outcome::converged;
       const RunStatus status{"motion", static_cast<double>(step) / static_cast<double>(steps),
-                             static_cast<int>(counters.iterations)};
+                             static_cast<int>(iterations)};
       if (observer && !observer(status)) return Outcome::interrupted;
     }
     return Outcome::converged;
   }
 
-  std::vector<double> cursor() {
-    std::vector<double> out;
-    visit_cursor(counters, state, [&](double number) { out.push_back(number); });
+  std::vector<double> cursor() const {
+    std::vector<double> out = mover->pack();
+    for (const long counter : {step, taken, iterations, resting}) out.push_back(static_cast<double>(counter));
     return out;
   }
 
   void resume(const Progress& progress) {
     recording.records = progress.records;
-    state = two_stage::start(ribbon, progress.records.back().state);
-    std::size_t size = 0;
-    visit_cursor(counters, state, [&](double) { ++size; });
-    if (size != progress.cursor.size()) {
-      throw InputError("checkpoint: the stored solver state does not fit the stored scene");
+    std::vector<double> numbers = progress.cursor;
+    for (long* counter : {&resting, &iterations, &taken, &step}) {
+      if (numbers.empty()) throw InputError("checkpoint: the stored solver state does not fit the stored scene");
+      *counter = std::lround(numbers.back());
+      numbers.pop_back();
     }
-    std::size_t next = 0;
-    visit_cursor(counters, state, [&](double& number) { number = progress.cursor[next++]; });
-    ribbon = motion_ribbon(scene, state.shape.time);
+    mover->unpack(progress.records.back().state, numbers);
   }
 };
-
-std::string text_of(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", number);
-  return text;
-}
-
-void add_warnings(const Motion& motion, Summary& summary) {
-  if (motion.counters.exceeded > 0) {
-    summary.warnings.push_back("the step of " + text_of(motion.scene.solver.time_step) +
-                               " s is beyond the stability bound of " + text_of(motion.stable_step) +
-                               " s: what looks like motion may be instability");
-  } else if (motion.counters.substeps > kManySubsteps * motion.counters.taken) {
-    summary.warnings.push_back("each step was divided into " +
-                               text_of(motion.counters.substeps / motion.counters.taken) +
-                               " (in the mean): the stability bound is " + text_of(motion.stable_step) + " s");
-  }
-}
 
 }  // namespace
 
@@ -237,33 +179,36 @@ Ribbon motion_ribbon(const Scene& scene, double time) {
   return geometry::make_ribbon(spec);
 }
 
+std::string text_of(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", number);
+  return text;
+}
+
 RunResult run_motion(const Scene& scene, const Observer& observer, const Progress* resume) {
-  Motion motion{scene, motion_ribbon(scene, 0), {}, {}, {}, {}, 0, {}};
+  Motion motion(scene);
   RunResult result;
   if (resume) {
     motion.resume(*resume);
     result.outcome = motion.go(observer);
   } else {
-    Start start = start_of(scene, motion.ribbon);
+    const Start start = start_of(scene, motion.mover->ribbon());
     motion.failure = start.failure;
-    if (!start.failure.empty()) start.shape = geometry::straight_state(motion.ribbon);
-    motion.state = two_stage::start(motion.ribbon, start.shape);
+    motion.mover->start(start.failure.empty() ? start.shape : geometry::straight_state(motion.mover->ribbon()));
     motion.record(0, 0);
     if (motion.failure.empty()) result.outcome = motion.go(observer);
   }
-  if (result.outcome == Outcome::not_converged &&
-      motion.recording.records.back().state.time < motion.state.shape.time) {
+  if (result.outcome == Outcome::not_converged && motion.recording.records.back().state.time < motion.time()) {
     motion.record(0, 0);  // the last good state
   }
-  result.summary = summary_of(scene, motion.ribbon, motion.recording.records.back(), result.outcome);
-  result.summary.method = "two-stage";
-  result.summary.steps = static_cast<int>(motion.counters.step);
-  result.summary.failure = result.outcome == Outcome::not_converged
-                               ? motion.failure + " (at " + text_of(motion.state.shape.time) + " s)"
-                               : "";
+  result.summary = summary_of(scene, motion.mover->ribbon(), motion.recording.records.back(), result.outcome);
+  result.summary.method = method_name(scene.solver.method);
+  result.summary.steps = static_cast<int>(motion.step);
+  result.summary.failure =
+      result.outcome == Outcome::not_converged ? motion.failure + " (at " + text_of(motion.time()) + " s)" : "";
   result.summary.timing =
-      motion.recording.finished(static_cast<int>(motion.counters.taken), static_cast<int>(motion.counters.iterations));
-  add_warnings(motion, result.summary);
+      motion.recording.finished(static_cast<int>(motion.taken), static_cast<int>(motion.iterations));
+  motion.mover->add_warnings(result.summary);
   result.progress = {std::move(motion.recording.records), motion.cursor()};
   return result;
 }

@@ -9,28 +9,30 @@
 #include "wunderlich/energy/model.hpp"
 #include "wunderlich/geometry/ribbon.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
+#include "wunderlich/solver/implicit/types.hpp"
 #include "wunderlich/solver/two_stage/types.hpp"
 
 namespace wunderlich::scene {
 
-enum class Method { equilibrium, two_stage };
+enum class Method { implicit, two_stage, equilibrium };
 
-/// "equilibrium", "two-stage": as scenes and summaries say it.
+/// "implicit", "two-stage", "equilibrium": as scenes and summaries say it.
 const char* method_name(Method method);
 
 using solver::LoopPath;
 
 struct SolverOptions {
-  Method method = Method::equilibrium;
+  Method method = Method::implicit;
   energy::Model energy;
   LoopPath loop_path = LoopPath::automatic;
   double duration = 1;        ///< load parameter at the end of the path [s]
   int steps = 0;              ///< load steps of the path; 0: as few as it takes
-  double tolerance = 1e-10;   ///< on the Newton step: rotation [rad] and displacement / length
+  double tolerance = 1e-10;   ///< equilibria: on the Newton step, rotation [rad] and displacement / length
   int max_iterations = 2000;  ///< Newton iterations of one minimisation
   double barrier = 1e-9;      ///< e1 of the final ruling barrier, see solver::ChainProblem
   double time_step = 0.01;    ///< dynamics [s]
   bool stop_at_rest = false;  ///< dynamics: end before `duration` once nothing moves
+  solver::implicit::Options implicit;
   solver::two_stage::Options two_stage;
 };
 

@@ -30,18 +30,28 @@ struct PointLoad {
   Vec3 torque = Vec3::Zero();
 };
 
-/// Everything that is minimised over a chain: elastic energy + barrier - loads + proximal term, subject to the
-/// holds and, for loops, the closure.
+/// A spring between the facet of one segment and an anchor: half of the sum of weight_jk e_j . e_k, e the differences
+/// in its middle, its tangent d3 and its width direction d2.
+struct FacetTie {
+  Mat3 weight = Mat3::Zero();  ///< symmetric
+  Mat3 anchor = Mat3::Zero();  ///< middle, d3, d2 as columns
+};
+
+/// Everything that is minimised over a chain: elastic energy + barrier - loads + ties, subject to the holds and, for
+/// loops, the closure. Ties are a proximal term in statics and the inertia of a step in dynamics.
 struct ChainProblem {
   energy::Model model;
-  double barrier = 1e-6;             ///< e1: e1 D sum over segments of (l_s/w) (-ln(1 - x^2))
-  std::vector<Vec3> force;           ///< (segments + 1) dead force on each node [N]
-  std::vector<PointLoad> loads;      ///< sorted by decreasing node
-  double proximity = 0;              ///< (proximity/2) sum of hinge weight |r - anchor|^2 [N/m^2]
-  std::vector<Vec3> anchor;          ///< (segments + 1), used if proximity > 0
-  std::vector<Hold> holds;           ///< sorted by decreasing node
-  bool closed = false;               ///< the loop's closure is a constraint
-  std::array<bool, 6> base_fixed{};  ///< position and rotation of the base
+  double barrier = 1e-6;                    ///< e1: e1 D sum over segments of (l_s/w) (-ln(1 - x^2))
+  std::vector<Vec3> force;                  ///< (segments + 1) dead force on each node [N]
+  std::vector<PointLoad> loads;             ///< sorted by decreasing node
+  std::vector<double> tie;                  ///< (segments + 1) or none: (tie/2) |r - anchor|^2 of each node [N/m]
+  std::vector<Vec3> anchor;                 ///< (segments + 1) or none
+  std::vector<FacetTie> facets;             ///< (segments) or none
+  double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
+  const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0
+  std::vector<Hold> holds;                  ///< sorted by decreasing node
+  bool closed = false;                      ///< the loop's closure is a constraint
+  std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
 };
 
 /// Number of constraint rows: the closure's first, then those of each hold in turn.
@@ -52,7 +62,7 @@ std::size_t row_count(const ChainProblem& problem);
 struct ObjectiveValue {
   double elastic = 0;
   double barrier = 0;
-  double rest = 0;  ///< loads and proximal term
+  double rest = 0;  ///< loads and ties
   double total() const { return elastic + barrier + rest; }
 };
 

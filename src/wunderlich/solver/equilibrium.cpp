@@ -249,7 +249,8 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
   PathState settled = state;
   const bool over = state.phase == Phase::settle || state.phase == Phase::done;
   settled.phase = over ? Phase::settle : state.phase;
-  const ChainProblem problem = problem_at(path, settled, over ? path.options.duration : state.t, chain);
+  ChainProblem problem;
+  problem_at(path, settled, over ? path.options.duration : state.t, chain, problem);
   EndReactions reactions;
   if (state.multipliers.size() != row_count(problem)) return reactions;
   geometry::forward_kinematics(ribbon, chain, work.kinematics);

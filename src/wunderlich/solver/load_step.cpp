@@ -48,16 +48,24 @@ Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index,
   return hold;
 }
 
+/// Keeps holds and loads sorted by decreasing node.
+template <class Item>
+void insert(const Item& item, std::vector<Item>& items) {
+  const auto after =
+      std::upper_bound(items.begin(), items.end(), item, [](const Item& a, const Item& b) { return a.node > b.node; });
+  items.insert(after, item);
+}
+
 /// A support's rows: position at its node, frame at its link; apart where these differ (the end of the last segment).
 void add_holds(const Support& support, Hold hold, ChainProblem& problem) {
   if (support.node != hold.node) {
     Hold position = hold;
     position.node = support.node;
     position.orientation = Orientation::free;
-    problem.holds.push_back(position);
+    insert(position, problem.holds);
     hold.position.fill(false);
   }
-  problem.holds.push_back(hold);
+  insert(hold, problem.holds);
 }
 
 void fix_base(const Support& support, const Pose& pose, ChainProblem& problem, Chain& chain) {
@@ -85,10 +93,9 @@ void add_loads(const PathProblem& path, const PathState& state, double t, ChainP
       problem.force[static_cast<std::size_t>(load.node)] += key.force;
     } else {
       const bool on_base = load.node == 0 && path.ribbon.clamped[0];
-      problem.loads.push_back({on_base ? -1 : load.node, load.frame, key.force, key.torque});
+      insert(PointLoad{on_base ? -1 : load.node, load.frame, key.force, key.torque}, problem.loads);
     }
   }
-  std::stable_sort(problem.loads.begin(), problem.loads.end(), [](auto& a, auto& b) { return a.node > b.node; });
 }
 
 }  // namespace
@@ -123,16 +130,17 @@ double motion_between(const PathProblem& path, double t0, double t1) {
   return most;
 }
 
-ChainProblem problem_at(const PathProblem& path, const PathState& state, double t, Chain& chain) {
+void problem_at(const PathProblem& path, const PathState& state, double t, Chain& chain, ChainProblem& problem) {
   const Ribbon& ribbon = ribbon_of(path, state);
-  ChainProblem problem;
   problem.model = path.options.model;
   problem.barrier = path.options.barrier;
   problem.force.assign(static_cast<std::size_t>(ribbon.node_count()), Vec3::Zero());
+  problem.loads.clear();
+  problem.holds.clear();
   problem.closed = state.closed;
   const auto& supports = path.surroundings.supports;
   // A strip that nothing holds is held at its base: its shape does not depend on where it is.
-  if (supports.empty()) problem.base_fixed.fill(true);
+  problem.base_fixed.fill(supports.empty());
   for (std::size_t i = 0; i < supports.size(); ++i) {
     if (is_base(ribbon, supports[i])) {
       fix_base(supports[i], pose_of(path, state, i, t), problem, chain);
@@ -140,10 +148,7 @@ ChainProblem problem_at(const PathProblem& path, const PathState& state, double 
       add_holds(supports[i], hold_at(path, state, i, t), problem);
     }
   }
-  std::stable_sort(problem.holds.begin(), problem.holds.end(),
-                   [](const Hold& a, const Hold& b) { return a.node > b.node; });
   add_loads(path, state, t, problem);
-  return problem;
 }
 
 }  // namespace wunderlich::solver

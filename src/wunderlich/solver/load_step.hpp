@@ -5,9 +5,10 @@
 
 namespace wunderlich::solver {
 
-/// Supports at load parameter t as base conditions, holds and loads. Moves the base of `chain` to its prescribed
-/// pose where it has one.
-ChainProblem problem_at(const PathProblem& path, const PathState& state, double t, geometry::Chain& chain);
+/// Supports at load parameter t as base conditions, holds and loads; ties are left as they are. Moves the base of
+/// `chain` to its prescribed pose where it has one. Allocates nothing once `problem` has its size.
+void problem_at(const PathProblem& path, const PathState& state, double t, geometry::Chain& chain,
+                ChainProblem& problem);
 
 /// The link whose pose a support holds; the number of segments for the end node's own frame.
 int held_link(const constraint::Support& support);

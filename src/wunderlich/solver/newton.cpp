@@ -92,14 +92,17 @@ void apply_step(const Chain& chain, const math::ChainStep& step, double scale, C
 }
 
 /// Largest fold-angle change, displacement / length, and (scaled: it is soft where kappa vanishes) eta change.
-double step_size(const Ribbon& ribbon, const NewtonWorkspace& work) {
-  double size = 0;
+void measure_step(const Ribbon& ribbon, const NewtonWorkspace& work, NewtonReport& report) {
+  report.last_step = 0;
   for (std::size_t i = 0; i < work.step.u.size(); ++i) {
-    if (!work.step.u[i].allFinite()) return std::numeric_limits<double>::infinity();
-    size = std::max({size, (work.system.links[i].axes * work.step.u[i]).norm(), work.step.v[i].norm() / ribbon.length,
-                     1e-3 * std::abs(work.step.u[i][1])});
+    const Vec2& u = work.step.u[i];
+    const double size = u.allFinite() ? std::max({(work.system.links[i].axes * u).norm(),
+                                                  work.step.v[i].norm() / ribbon.length, 1e-3 * std::abs(u[1])})
+                                      : std::numeric_limits<double>::infinity();
+    if (size <= report.last_step) continue;
+    report.last_step = size;
+    report.worst_node = static_cast<int>(i);
   }
-  return size;
 }
 
 /// NaN if any value is: it must not pass for small.
@@ -126,6 +129,17 @@ void set_shift(const Ribbon& ribbon, double shift, math::ChainSystem& system) {
   system.base_shift = {base / (ribbon.length * ribbon.length), base};
 }
 
+/// Solves without a shift, if need be without the terms that carry forces. False if negative modes are left.
+bool find_inertial_direction(const Ribbon& ribbon, NewtonWorkspace& work, NewtonReport& report) {
+  set_shift(ribbon, 0, work.system);
+  for (const bool geometric : {true, false}) {
+    work.system.geometric = geometric;
+    ++report.sweeps;
+    if (math::chain_step(work.system, work.sweep, work.step) && work.step.negative_pivots == 0) return true;
+  }
+  return false;
+}
+
 /// Solves with the smallest shift of the series that leaves no negative mode; false if none does.
 bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& work, NewtonReport& report,
                     double& shift) {
@@ -147,9 +161,8 @@ bool take_step(const Iterate& at, Chain& current, double scale, NewtonReport& re
   apply_step(current, work.step, scale, work.trial);
   geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
   ++report.evaluations;
-  if (!std::isfinite(objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics).total())) {
-    return false;
-  }
+  report.value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
+  if (!std::isfinite(report.value.total())) return false;
   std::swap(current, work.trial);
   std::swap(work.kinematics, work.trial_kinematics);
   return true;
@@ -246,9 +259,12 @@ Stationary classify(const Ribbon& ribbon, const NewtonOptions& options, double s
 NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const NewtonOptions& options, Chain& chain,
                       std::vector<double>& multipliers, NewtonWorkspace& work) {
   NewtonReport report;
-  Chain current = chain;
+  Chain& current = work.current;
+  std::vector<double>& lambda = work.multipliers;
+  current = chain;
   multipliers.resize(row_count(problem), 0.0);
-  std::vector<double> lambda = multipliers;
+  lambda = multipliers;
+  work.system.geometric = true;
   Iterate at{ribbon, problem, work};
   double shift = 0;
   geometry::forward_kinematics(ribbon, current, work.kinematics);
@@ -258,34 +274,40 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     multipliers = lambda;
     return report;
   };
+  const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.system);
-    if (!find_direction(ribbon, problem.loads.empty(), work, report, shift)) {
+    const bool inertial = options.inertial && shift == 0 && find_inertial_direction(ribbon, work, report);
+    if (!inertial && !find_direction(ribbon, conservative, work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;
     }
     const double limit = step_limit(ribbon, options, current, work);
-    report.last_step = step_size(ribbon, work);
+    measure_step(ribbon, work, report);
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
-    if (!problem.loads.empty()) {
-      // Nothing to descend on: full Newton steps, as far as they are bounded.
-      if (limit == 1 && report.last_step < options.tolerance && report.max_residual < options.tolerance)
-        return accept();
+    const bool small = limit == 1 && report.last_step < options.tolerance && report.max_residual < options.tolerance;
+    if (!conservative || (inertial && small)) {
+      // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
+      if (small && !options.inertial) return accept();
       if (!take_step(at, current, limit, report)) {
         report.outcome = NewtonOutcome::line_search_failed;
         return report;
       }
       lambda.assign(work.step.multiplier.begin() + static_cast<std::ptrdiff_t>(work.system.probe_count()),
                     work.step.multiplier.end());
+      if (small) return accept();
       continue;
     }
     at.weigh_rows();
     const double merit = at.merit_of(current, work.kinematics, work.residuals);
     const double slope = at.slope();
     const Stationary kind = classify(ribbon, options, shift, slope, merit, work, report);
-    if (kind == Stationary::minimum) return accept();
+    if (kind == Stationary::minimum) {
+      report.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
+      return accept();
+    }
     if (kind == Stationary::unshift) {
       shift = 0;
       continue;

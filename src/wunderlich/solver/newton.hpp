@@ -11,6 +11,9 @@ struct NewtonOptions {
   double tolerance = 1e-10;  ///< on the step: fold angles [rad], displacements / length
   int max_iterations = 300;
   double max_turn = 0.6;  ///< largest change of a fold angle in one iteration [rad]
+  bool inertial = false;  ///< masses tie the strip to where it was going: terms that carry forces are left out where
+                          ///< they would make the Hessian indefinite, and a step below the tolerance is taken and the
+                          ///< last one
 };
 
 enum class NewtonOutcome {
@@ -32,6 +35,8 @@ struct NewtonReport {
   int negative_modes = 0;   ///< of the unshifted reduced Hessian where it stopped
   double max_residual = 0;  ///< of the constraint rows (m, rad, 1)
   double last_step = 0;
+  int worst_node = 0;    ///< where the last step was largest
+  ObjectiveValue value;  ///< `inertial`: at the end
   bool converged() const { return outcome == NewtonOutcome::converged; }
 };
 
@@ -41,7 +46,8 @@ struct NewtonWorkspace {
   math::ChainWorkspace sweep;
   math::ChainStep step;
   geometry::Kinematics kinematics, trial_kinematics;
-  geometry::Chain trial;
+  geometry::Chain current, trial;
+  std::vector<double> multipliers;
   std::vector<double> residuals, trial_residuals;
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };

@@ -117,13 +117,15 @@ bool solve_at(const PathProblem& path, PathState& state, double t, const Proxima
   const Ribbon& ribbon = ribbon_of(path, state);
   Chain chain = state.chain;
   std::vector<double> multipliers = state.multipliers;
-  ChainProblem problem = problem_at(path, state, t, chain);
+  ChainProblem problem;
+  problem_at(path, state, t, chain, problem);
   NewtonOptions options = newton_options(path);
   if (proximal.passes > 0) {
     if (is_flat(chain)) seed(ribbon, chain);
     const double l = ribbon.length;
     problem.barrier = std::max(problem.barrier, kPathBarrier);
-    problem.proximity = proximal.mass * ribbon.bending_stiffness * ribbon.width / (l * l * l * l);
+    const double mass = proximal.mass * ribbon.bending_stiffness * ribbon.width / (l * l * l * l);
+    for (const double hinge : ribbon.hinge_length) problem.tie.push_back(mass * hinge);
     options.tolerance = std::max(options.tolerance, 1e-7);
     options.max_iterations = std::min(options.max_iterations, 200);
   }

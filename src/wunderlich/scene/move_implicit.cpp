@@ -1,0 +1,123 @@
+#include <algorithm>
+
+#include "wunderlich/base/error.hpp"
+#include "wunderlich/scene/cursor.hpp"
+#include "wunderlich/scene/drive.hpp"
+#include "wunderlich/scene/mover.hpp"
+#include "wunderlich/solver/implicit/implicit.hpp"
+
+namespace wunderlich::scene {
+
+namespace implicit = solver::implicit;
+
+namespace {
+
+/// The supports that hold at a time, on the strip as they hold it.
+solver::PathProblem problem_of(const Scene& scene, double time) {
+  solver::PathOptions options;
+  options.model = scene.solver.energy;
+  options.barrier = scene.solver.barrier;
+  constraint::Surroundings surroundings = scene.surroundings;
+  auto& supports = surroundings.supports;
+  supports.erase(std::remove_if(supports.begin(), supports.end(), [&](const auto& s) { return !holds(s, time); }),
+                 supports.end());
+  return solver::make_path(motion_ribbon(scene, time), surroundings, options);
+}
+
+template <class Visit>
+void visit_all(double& repeats, implicit::State& state, const Visit& visit) {
+  const auto whole = [&](int& number) {
+    double real = number;
+    visit(real);
+    number = static_cast<int>(real);
+  };
+  const auto vectors = [&](auto& list) {
+    for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
+  };
+  visit(repeats);
+  auto& p = state.points;
+  for (auto* list : {&p.x, &p.v, &p.a, &p.acceleration, &p.x_before, &p.v_before}) vectors(*list);
+  auto& base = state.before.base;
+  visit(base.position[0]), visit(base.position[1]), visit(base.position[2]);
+  visit(base.frame.x()), visit(base.frame.y()), visit(base.frame.z()), visit(base.frame.w());
+  for (auto& kappa : state.before.kappa) visit(kappa);
+  for (auto& eta : state.before.eta) visit(eta);
+  whole(state.level), whole(state.calm);
+  for (double* number : {&state.last_step, &state.elastic, &state.peak}) visit(*number);
+  for (auto& c : state.base_reaction) visit(c);
+}
+
+class ImplicitMover : public Mover {
+ public:
+  explicit ImplicitMover(const Scene& scene) : scene_(scene), problem_(problem_of(scene, 0)) {}
+
+  void start(const geometry::State& shape) override {
+    state_ = implicit::start(problem_, scene_.solver.implicit, shape, scene_.initial.spin, work_);
+    shape_ = implicit::shape_of(problem_, state_);
+  }
+
+  Move step(double, double t1, Recording& recording) override {
+    const Stopwatch watch;
+    const implicit::StepReport report = implicit::step(problem_, scene_.solver.implicit, t1, state_, work_);
+    recording.add_phase_time("minimise", watch.seconds());
+    repeats_ += report.repeats;
+    if (report.accepted) shape_ = implicit::shape_of(problem_, state_);
+    return {report.accepted, report.iterations, report.failure};
+  }
+
+  void release() override {
+    const solver::PathProblem before = std::move(problem_);
+    problem_ = problem_of(scene_, state_.path.t);
+    implicit::change_supports(before, problem_, state_);
+    implicit::find_accelerations(problem_, scene_.solver.implicit, state_, work_);
+    shape_ = implicit::shape_of(problem_, state_);
+  }
+
+  const geometry::Ribbon& ribbon() const override { return problem_.ribbon; }
+  const geometry::State& shape() const override { return shape_; }
+  double kinetic_energy() const override {
+    return implicit::kinetic_energy(problem_.ribbon, scene_.solver.implicit.kinetic, state_.points,
+                                    state_.path.chain.eta);
+  }
+  void add_warnings(Summary&) const override {}
+
+  std::vector<double> pack() const override {
+    std::vector<double> out = pack_cursor(state_.path);
+    out.insert(out.begin(), static_cast<double>(out.size()));
+    implicit::State state = state_;
+    double repeats = repeats_;
+    visit_all(repeats, state, [&](double number) { out.push_back(number); });
+    return out;
+  }
+
+  void unpack(const geometry::State& shape, const std::vector<double>& numbers) override {
+    const auto broken = [] { throw InputError("checkpoint: the stored solver state does not fit the stored scene"); };
+    problem_ = problem_of(scene_, shape.time);
+    if (numbers.empty() || !(numbers[0] >= 0 && numbers[0] < static_cast<double>(numbers.size()))) broken();
+    const auto end = numbers.begin() + 1 + static_cast<std::ptrdiff_t>(numbers[0]);
+    state_.path = solver::PathState();
+    state_.path = unpack_cursor(problem_, {numbers.begin() + 1, end});
+    implicit::resize(implicit::point_count(problem_.ribbon, scene_.solver.implicit.kinetic), state_.points);
+    state_.before = state_.path.chain;
+    std::size_t size = 0;
+    visit_all(repeats_, state_, [&](double) { ++size; });
+    if (static_cast<std::ptrdiff_t>(size) != numbers.end() - end) broken();
+    auto next = end;
+    visit_all(repeats_, state_, [&](double& number) { number = *next++; });
+    shape_ = implicit::shape_of(problem_, state_);
+  }
+
+ private:
+  const Scene& scene_;
+  solver::PathProblem problem_;
+  implicit::State state_;
+  implicit::Workspace work_;
+  geometry::State shape_;
+  double repeats_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Mover> implicit_mover(const Scene& scene) { return std::make_unique<ImplicitMover>(scene); }
+
+}  // namespace wunderlich::scene

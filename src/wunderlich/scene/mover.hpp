@@ -1,0 +1,46 @@
+/// A method of dynamics as a run sees it: something that takes steps. Internal to scene/.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "wunderlich/base/summary.hpp"
+#include "wunderlich/geometry/ribbon.hpp"
+#include "wunderlich/geometry/state.hpp"
+#include "wunderlich/scene/recording.hpp"
+#include "wunderlich/scene/scene.hpp"
+
+namespace wunderlich::scene {
+
+/// What became of one step.
+struct Move {
+  bool accepted = false;
+  int iterations = 0;
+  std::string failure;  ///< why not
+};
+
+class Mover {
+ public:
+  virtual ~Mover() = default;
+  virtual void start(const geometry::State& shape) = 0;
+  /// One step; a step that fails leaves everything as it was. Times of phases go to the recording.
+  virtual Move step(double t0, double t1, Recording& recording) = 0;
+  /// Takes the supports that hold from now on, after some have let go.
+  virtual void release() = 0;
+  virtual const geometry::Ribbon& ribbon() const = 0;
+  virtual const geometry::State& shape() const = 0;
+  virtual double kinetic_energy() const = 0;  ///< [J]
+  virtual void add_warnings(Summary& summary) const = 0;
+  /// The method's own state as numbers, and back; throws InputError if they do not fit.
+  virtual std::vector<double> pack() const = 0;
+  virtual void unpack(const geometry::State& shape, const std::vector<double>& numbers) = 0;
+};
+
+std::unique_ptr<Mover> two_stage_mover(const Scene& scene);
+std::unique_ptr<Mover> implicit_mover(const Scene& scene);
+
+/// "0.001"
+std::string text_of(double number);
+
+}  // namespace wunderlich::scene

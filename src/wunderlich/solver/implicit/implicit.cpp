@@ -1,0 +1,273 @@
+#include "wunderlich/solver/implicit/implicit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/load_step.hpp"
+#include "wunderlich/solver/path_step.hpp"
+
+namespace wunderlich::solver::implicit {
+
+using geometry::Chain;
+using geometry::Ribbon;
+
+namespace {
+
+constexpr std::array<double, 4> kRho{0.9, 0.6, 0.3, 0};  // what generalised-alpha leaves of the fastest oscillation
+constexpr double kGrowth = 1e-3;       // of the energy in one step, over the largest kinetic energy: more is no motion
+constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
+constexpr int kCalmSteps = 50;         // before less damping is tried again
+constexpr double kProbe = 0.02;        // of the strip's own time: the step that finds accelerations
+constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
+
+/// Time in which a wave of bending crosses the strip.
+double own_time(const Ribbon& ribbon) {
+  return ribbon.length * ribbon.length * std::sqrt(ribbon.area_density / ribbon.bending_stiffness);
+}
+
+double own_energy(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width / ribbon.length; }
+
+bool carries_frames(const PathProblem& path) {
+  const auto& supports = path.surroundings.supports;
+  return std::any_of(supports.begin(), supports.end(), [](const constraint::Support& support) {
+    return support.orientation == constraint::Orientation::about_tangent;
+  });
+}
+
+Scheme scheme_of(const Options& options, const State& state, double h) {
+  return make_scheme(options.integrator, kRho[static_cast<std::size_t>(state.level)], h, state.last_step);
+}
+
+/// Joint coordinates carried on as in the last step; less far where rulings would meet.
+void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
+  chain = state.path.chain;
+  if (state.last_step == 0) return;
+  const Chain& now = state.path.chain;
+  double share = h / state.last_step;
+  for (std::size_t s = 0; s + 1 < now.eta.size(); ++s) {
+    const double k = 0.5 * ribbon.width / ribbon.rest_length[s];
+    const double x = k * (now.eta[s + 1] - now.eta[s]);
+    const double dx = x - k * (state.before.eta[s + 1] - state.before.eta[s]);
+    const double room = kBoundaryFraction * (dx > 0 ? 1 - x : 1 + x);
+    if (share * std::abs(dx) > room) share = room / std::abs(dx);
+  }
+  for (std::size_t i = 0; i < now.kappa.size(); ++i) {
+    chain.kappa[i] += share * (now.kappa[i] - state.before.kappa[i]);
+    chain.eta[i] += share * (now.eta[i] - state.before.eta[i]);
+  }
+  const Vec3 turn = math::log_map(now.base.frame * state.before.base.frame.conjugate());
+  chain.base.position += share * (now.base.position - state.before.base.position);
+  chain.base.frame = math::exp_map(share * turn) * now.base.frame;
+}
+
+/// Supports, loads and inertia of a step that ends at t1; `chain` gets its prescribed base.
+void set_problem(const PathProblem& path, const Options& options, const Scheme& scheme, double t1, const State& state,
+                 Chain& chain, ChainProblem& problem) {
+  problem_at(path, state.path, t1, chain, problem);
+  if (path.surroundings.supports.empty()) problem.base_fixed.fill(false);
+  tie(path.ribbon, options.kinetic, scheme, state.points, state.path.chain.eta, problem);
+  problem.viscosity = options.viscosity / scheme.h;
+  problem.before = options.viscosity > 0 ? &state.path.chain : nullptr;
+}
+
+/// Work of what moves the supports during the step, by the mean of the reactions before and after.
+double support_work(const ChainProblem& problem, const State& state, const Chain& start, const Workspace& work,
+                    const std::vector<double>& residuals) {
+  double sum = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const double before = i < state.path.multipliers.size() ? state.path.multipliers[i] : work.multipliers[i];
+    sum += 0.5 * (before + work.multipliers[i]) * residuals[i];
+  }
+  math::Vec6 way;
+  way << start.base.position - state.path.chain.base.position,
+      math::log_map(start.base.frame * state.path.chain.base.frame.conjugate());
+  const math::Vec6 reaction = 0.5 * (state.base_reaction + work.newton.sweep.base_gradient);
+  for (int c = 0; c < 6; ++c) {
+    if (problem.base_fixed[static_cast<std::size_t>(c)]) sum += reaction[c] * way[c];
+  }
+  return sum;
+}
+
+/// Work of the dead forces from x0 to x1.
+double load_work(const ChainProblem& problem, const std::vector<Vec3>& x0, const std::vector<Vec3>& x1) {
+  double sum = 0;
+  for (std::size_t i = 0; i < problem.force.size(); ++i) sum += problem.force[i].dot(x1[i] - x0[i]);
+  return sum;
+}
+
+NewtonOptions newton_options(const Options& options) {
+  NewtonOptions newton;
+  newton.inertial = true;
+  newton.tolerance = options.tolerance;
+  newton.max_iterations = options.max_iterations;
+  return newton;
+}
+
+/// The velocity that is left after drag has acted for a while.
+void drag(const Ribbon& ribbon, const Options& options, double h, const geometry::Kinematics& k, Points& points) {
+  if (options.drag_tangent == 0 && options.drag_normal == 0) return;
+  const double along = std::exp(-options.drag_tangent * h), across = std::exp(-options.drag_normal * h);
+  const auto n = static_cast<std::size_t>(ribbon.segments);
+  for (std::size_t i = 0; i <= n; ++i) {
+    const Vec3 tangent = (k.frame[i > 0 ? i - 1 : 0].col(2) + k.frame[std::min(i, n - 1)].col(2)).normalized();
+    const Vec3 part = tangent.dot(points.v[i]) * tangent;
+    points.v[i] = along * part + across * (points.v[i] - part);
+  }
+  for (std::size_t i = n + 1; i < points.v.size(); ++i) points.v[i] *= across;
+}
+
+std::string why(const NewtonReport& report, double t, double h) {
+  std::string text = "step of " + std::to_string(h) + " s to " + std::to_string(t) + " s: ";
+  switch (report.outcome) {
+    case NewtonOutcome::iteration_limit:
+      return text + "no convergence in " + std::to_string(report.iterations) + " iterations; last step " +
+             std::to_string(report.last_step) + ", largest at node " + std::to_string(report.worst_node);
+    case NewtonOutcome::line_search_failed:
+      return text + "no step lowers the energy, node " + std::to_string(report.worst_node) +
+             " moves most; supports may move too fast or ask for more than the strip can reach";
+    case NewtonOutcome::singular:
+      return text + "the linear system is singular; supports may hold the same motion twice";
+    case NewtonOutcome::converged:
+      break;
+  }
+  return text + "energy grows";
+}
+
+/// Does generalised-alpha have more damping to offer?
+bool can_damp(const Options& options, const State& state) {
+  return options.integrator == Integrator::generalised_alpha && state.level + 1 < static_cast<int>(kRho.size());
+}
+
+}  // namespace
+
+State start(const PathProblem& path, const Options& options, const geometry::State& shape, const Vec3& spin,
+            Workspace& work) {
+  State state;
+  state.path.phase = Phase::load;
+  state.path.closed = path.ribbon.is_loop();
+  state.path.t = shape.time;
+  state.path.chain = geometry::chain_of(path.ribbon, shape);
+  if (path.ribbon.is_loop()) state.path.chain.eta.back() = path.ribbon.seam_sign() * state.path.chain.eta.front();
+  state.before = state.path.chain;
+  note_frames(path, state.path);
+  resize(point_count(path.ribbon, options.kinetic), state.points);
+  geometry::forward_kinematics(path.ribbon, state.path.chain, work.kinematics);
+  read_points(path.ribbon, options.kinetic, work.kinematics, state.points.x);
+  const auto n = static_cast<std::size_t>(path.ribbon.segments);
+  for (std::size_t i = 0; i <= n; ++i) state.points.v[i] = shape.r_dot[i];
+  for (std::size_t i = n + 1; i < state.points.v.size(); ++i) state.points.v[i] = spin.cross(state.points.x[i]);
+  ChainProblem& problem = work.problem;
+  problem_at(path, state.path, shape.time, state.path.chain, problem);
+  problem.barrier = path.options.barrier;
+  const ObjectiveValue value = objective(path.ribbon, problem, state.path.chain, work.kinematics, work.kinematics);
+  state.elastic = value.elastic + value.barrier;
+  state.peak = kinetic_energy(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
+  find_accelerations(path, options, state, work);
+  return state;
+}
+
+void find_accelerations(const PathProblem& path, const Options& options, State& state, Workspace& work) {
+  // A short Euler step that is thrown away; short against the strip's own time, long against rounding.
+  const double h = kProbe * own_time(path.ribbon) / path.ribbon.segments;
+  const Scheme scheme = make_scheme(Integrator::euler, 0, h, 0);
+  work.trial = state.path.chain;
+  set_problem(path, options, scheme, state.path.t + h, state, work.trial, work.problem);
+  work.problem.viscosity = 0;
+  work.multipliers.assign(row_count(work.problem), 0.0);
+  NewtonOptions newton = newton_options(options);
+  newton.tolerance = 1e-10;
+  state.last_step = 0;
+  state.path.multipliers.clear();
+  const NewtonReport report = minimise(path.ribbon, work.problem, newton, work.trial, work.multipliers, work.newton);
+  if (!report.converged()) return;  // from rest, then
+  read_points(path.ribbon, options.kinetic, work.newton.kinematics, work.x);
+  for (std::size_t i = 0; i < work.x.size(); ++i) {
+    state.points.acceleration[i] = scheme.stiffness * (work.x[i] - anchor(scheme, state.points, i));
+    state.points.a[i] = state.points.acceleration[i];
+  }
+  state.path.multipliers = work.multipliers;
+  state.base_reaction = work.newton.sweep.base_gradient;
+}
+
+void change_supports(const PathProblem& before, const PathProblem& after, State& state) {
+  const auto convert = [&](Chain& chain) {
+    chain = geometry::chain_of(after.ribbon, geometry::state_of(before.ribbon, chain, 0));
+    if (after.ribbon.is_loop()) chain.eta.back() = after.ribbon.seam_sign() * chain.eta.front();
+  };
+  convert(state.path.chain);
+  state.before = state.path.chain;
+  note_frames(after, state.path);
+}
+
+StepReport step(const PathProblem& path, const Options& options, double t1, State& state, Workspace& work) {
+  const Ribbon& ribbon = path.ribbon;
+  const double h = t1 - state.path.t;
+  StepReport report;
+  const int level = state.level;
+  const double kinetic0 = kinetic_energy(ribbon, options.kinetic, state.points, state.path.chain.eta);
+  for (;; ++state.level, ++report.repeats) {
+    const Scheme scheme = scheme_of(options, state, h);
+    predict(ribbon, state, h, work.trial);
+    set_problem(path, options, scheme, t1, state, work.trial, work.problem);
+    work.multipliers = state.path.multipliers;
+    work.multipliers.resize(row_count(work.problem), 0.0);
+    // How far the supports have moved: the rows' residuals before the step.
+    work.start = state.path.chain;
+    work.start.base = work.trial.base;
+    geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
+    constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
+    report.newton = minimise(ribbon, work.problem, newton_options(options), work.trial, work.multipliers, work.newton);
+    report.iterations += report.newton.iterations;
+    if (!report.newton.converged()) {
+      state.level = level;
+      report.failure = why(report.newton, t1, h);
+      return report;
+    }
+    read_points(ribbon, options.kinetic, work.newton.kinematics, work.x);
+    work.points = state.points;
+    report.error = finish(scheme, work.x, work.points) / ribbon.length;
+    const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
+    const double elastic1 = report.newton.value.elastic + report.newton.value.barrier;
+    const double growth = elastic1 - state.elastic + kinetic1 - kinetic0 -
+                          load_work(work.problem, state.points.x, work.x) -
+                          support_work(work.problem, state, work.start, work, work.residuals);
+    const double peak = std::max(state.peak, kinetic1);
+    const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
+    if (grows && can_damp(options, state)) continue;
+    if (grows || (options.error > 0 && report.error > options.error)) {
+      state.level = level;
+      report.failure =
+          grows ? "the energy grows by " + std::to_string(growth) + " J in a step of " + std::to_string(h) + " s"
+                : "local error " + std::to_string(report.error);
+      return report;
+    }
+    state.peak = peak;
+    state.elastic = elastic1;
+    break;
+  }
+  state.calm = report.repeats > 0 ? 0 : state.calm + 1;
+  if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
+  state.before = state.path.chain;
+  state.last_step = h;
+  std::swap(state.path.chain, work.trial);
+  std::swap(state.path.multipliers, work.multipliers);
+  std::swap(state.points, work.points);
+  state.base_reaction = work.newton.sweep.base_gradient;
+  state.path.t = t1;
+  ++state.path.steps;
+  state.path.iterations += report.iterations;
+  if (carries_frames(path)) note_frames(path, state.path);
+  drag(ribbon, options, h, work.newton.kinematics, state.points);
+  report.accepted = true;
+  return report;
+}
+
+geometry::State shape_of(const PathProblem& path, const State& state) {
+  geometry::State shape = geometry::state_of(path.ribbon, state.path.chain, state.path.t);
+  for (std::size_t i = 0; i < shape.r.size(); ++i) shape.r_dot[i] = state.points.v[i];
+  return shape;
+}
+
+}  // namespace wunderlich::solver::implicit

@@ -1,0 +1,45 @@
+/// What the implicit method is told (options), what it moves (state) and what it says (report).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wunderlich/solver/equilibrium.hpp"
+#include "wunderlich/solver/implicit/inertia.hpp"
+
+namespace wunderlich::solver::implicit {
+
+struct Options {
+  Integrator integrator = Integrator::generalised_alpha;
+  KineticEnergy kinetic = KineticEnergy::rotary;
+  double tolerance = 1e-6;  ///< on Newton's last step (which is taken): rotation [rad], displacement / length
+  int max_iterations = 40;  ///< of one minimisation
+  double drag_tangent = 0;  ///< rate [1/s] at which the velocity along the tangent decays, as in air
+  double drag_normal = 0;   ///< the same across it
+  double viscosity = 0;     ///< of the material: time by which stress lags behind bending (Kelvin-Voigt) [s]
+  double error = 0;         ///< local error of a step that is accepted, over the length; 0: any
+};
+
+/// What a checkpoint must hold for a run to go on bit for bit.
+struct State {
+  PathState path;  ///< joint coordinates, multipliers, carried frames; phase `load`, t the time [s]
+  Points points;
+  geometry::Chain before;                         ///< joint coordinates a step earlier, for the prediction
+  double last_step = 0;                           ///< [s]; 0 before the first, and where something has let go
+  int level = 0;                                  ///< of the damping of what a step does not resolve: 0 ... 3
+  int calm = 0;                                   ///< steps since it was raised
+  double elastic = 0;                             ///< energy with the barrier, now [J]
+  double peak = 0;                                ///< largest kinetic energy so far [J]
+  math::Vec6 base_reaction = math::Vec6::Zero();  ///< of a held base: force and torque
+};
+
+struct StepReport {
+  bool accepted = false;
+  std::string failure;  ///< why not; empty if accepted
+  NewtonReport newton;  ///< of the last minimisation
+  int iterations = 0;   ///< of all
+  int repeats = 0;      ///< minimisations thrown away, because the energy grew
+  double error = 0;     ///< estimate of the local error over the length
+};
+
+}  // namespace wunderlich::solver::implicit
