@@ -1,13 +1,17 @@
 #!/usr/bin/env bash
-# Slower checks than ./test has time for, some two hours on two cores: clang-tidy on every source, every check of the
-# sanitizers, tests repeated in random order, half an hour of fuzzing, the core compiled against libc++, and coverage
-# (build/coverage/report).
+# Slower checks than ./test has time for, some two hours on two cores: the paper's figures in full, clang-tidy on every
+# source, every check of the sanitizers, tests repeated in random order, half an hour of fuzzing, the core compiled
+# against libc++, and coverage (build/coverage/report).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh test
 
 echo "nightly: everything that ./test does"
 ./test
+
+echo "nightly: the paper's figures, in full (build/validation)"
+tools/setup.sh validation
+/usr/bin/python3 validation/run.py
 
 echo "nightly: clang-tidy on everything"
 tools/tidy.sh

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
-# `tools/setup.sh test` for every check as well. This file is the one list of what the project needs.
+# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py.
+# This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
 
-# A line each: what to look for (a command, or a Debian package when it starts with "lib" or ends in "-dev"),
-# the package that brings it, and who needs it.
+# A line each: what to look for (a command, or a Debian package when it starts with "lib" or "python3-" or ends in
+# "-dev"), the package that brings it, and who needs it.
 needs='
 g++                 g++                 run
 cmake               cmake               run
@@ -25,12 +26,13 @@ clang++             clang               test
 libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
 clang-tidy          clang-tidy          test
+python3-matplotlib  python3-matplotlib  validation
 '
 
 present() {
   case $1 in
     ca-certificates.crt) [ -s /etc/ssl/certs/ca-certificates.crt ] ;;
-    lib*|*-dev) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
+    lib*|python3-*|*-dev) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
     *) command -v "$1" >/dev/null ;;
   esac
 }
@@ -39,7 +41,7 @@ missing() {
   local probe package group
   while read -r probe package group; do
     [ -n "$probe" ] || continue
-    [ "$group" = run ] || [ "$1" = test ] || continue
+    [ "$group" = run ] || [ "$group" = "$1" ] || continue
     present "$probe" || echo "$package"
   done <<<"$needs"
 }
@@ -60,7 +62,10 @@ install() {
 }
 
 group=${1:-run}
-case $group in run|test) ;; *) echo "usage: tools/setup.sh [run|test]" >&2; exit 2 ;; esac
+case $group in
+  run|test|validation) ;;
+  *) echo "usage: tools/setup.sh [run|test|validation]" >&2; exit 2 ;;
+esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"
 

@@ -27,7 +27,7 @@ def rainbow(count):
 
 
 def ribbons(axes, surfaces, colours, view, title="", apart=0.0):
-    """Surfaces over each other as seen from `view`, (elevation, azimuth) in degrees, each further right by `apart` [m]."""
+    """Surfaces over each other, seen from `view` = (elevation, azimuth) in degrees, each `apart` [m] further right."""
     up, round_ = (radians(angle) for angle in view)
     right = (-sin(round_), cos(round_), 0.0)
     above = (-sin(up) * cos(round_), -sin(up) * sin(round_), cos(up))
@@ -45,6 +45,14 @@ def ribbons(axes, surfaces, colours, view, title="", apart=0.0):
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_title(title)
+
+
+def same_scale(views):
+    """Gives views of ribbons the limits that hold all of them."""
+    for get, give in (("get_xlim", "set_xlim"), ("get_ylim", "set_ylim")):
+        limits = [getattr(axes, get)() for axes in views]
+        for axes in views:
+            getattr(axes, give)(min(low for low, _ in limits), max(high for _, high in limits))
 
 
 def shaded(colour, quad):

@@ -93,10 +93,14 @@ def measure(runner):
 def draw(data, drawing, path):
     figure = drawing.plt.figure(figsize=(10, 5.5))
     grid = figure.add_gridspec(2, 4, width_ratios=(1.35, 1.35, 1, 1))
+    views = []
     for column, name in enumerate(data["frames"]):
+        views.append(figure.add_subplot(grid[0, column]))
         wanted = [data["frames"][name][i - 1] for i in FRAMES[name.split("-")[0]]]
         view, apart = ((5, -75), 0.2) if column < 2 else ((8, -85), 0.0)
-        drawing.ribbons(figure.add_subplot(grid[0, column]), wanted, drawing.rainbow(len(wanted)), view, name, apart)
+        drawing.ribbons(views[-1], wanted, drawing.rainbow(len(wanted)), view, name, apart)
+    drawing.same_scale(views[:2])
+    drawing.same_scale(views[2:])
     kinetic, twist = figure.add_subplot(grid[1, :2]), figure.add_subplot(grid[1, 2:])
     for kind, colour in (("stiff", "#1f6f8b"), ("soft", "#b5482e")):
         history = data["runs"][f"belt-release-{kind}"].history

@@ -81,7 +81,8 @@ def measure(runner):
             elastic = run.history["elastic"]
             rows += [at_most(f"{name}: kinetic energy at the end, over the largest",
                              run.history["kinetic"][-1] / max(run.history["kinetic"]), 1e-5),
-                     at_least(f"{name}: largest elastic energy on the way, over that at rest", max(elastic) / elastic[-1], 1.02)]
+                     at_least(f"{name}: largest elastic energy on the way, over that at rest",
+                              max(elastic) / elastic[-1], 1.02)]
     return rows, {"profiles": profiles, "reference": reference, "picture": picture}
 
 
