@@ -77,6 +77,12 @@ ChainProblem random_problem(const Ribbon& ribbon, const energy::Model& model, Ra
   return problem;
 }
 
+/// Dashpots that have bent since `before`.
+void add_viscosity(const Chain& before, ChainProblem& problem) {
+  problem.viscosity = 0.8;
+  problem.before = &before;
+}
+
 /// Holds of every kind. Rows of a whole frame are those of the step to the target, hence gradients where the frame is
 /// on its target only: put it there.
 void add_holds(const Kinematics& k, Random& random, ChainProblem& problem) {
@@ -146,6 +152,8 @@ TEST(SweepGradient, IsTheSlopeOfTheObjective) {
         SCOPED_TRACE(static_cast<int>(elastic) * 10 + static_cast<int>(strain));
         const Chain chain = random_chain(ribbon, random);
         ChainProblem problem = random_problem(ribbon, {elastic, 3, strain}, random);
+        const Chain before = random_chain(ribbon, random);
+        add_viscosity(before, problem);
         expect_gradient(ribbon, problem, chain, {}, random);
         Kinematics k;
         geometry::forward_kinematics(ribbon, chain, k);
@@ -165,6 +173,8 @@ TEST(SweepGradient, IsTheSlopeOfAClosedLoop) {
     const Ribbon ribbon = strip(true, half_twists, {}, false);
     const Chain chain = random_chain(ribbon, random);
     ChainProblem problem = random_problem(ribbon, {}, random);
+    const Chain before = random_chain(ribbon, random);
+    add_viscosity(before, problem);
     problem.loads.clear();
     problem.closed = true;
     std::vector<double> multipliers;
@@ -172,6 +182,37 @@ TEST(SweepGradient, IsTheSlopeOfAClosedLoop) {
       multipliers.push_back(i < 3 || i > 5 ? random() : 0);  // the frames are off: see add_holds
     }
     expect_gradient(ribbon, problem, chain, multipliers, random);
+  }
+}
+
+/// Along the Newton step the gradient goes to zero, to first order: so the sweep's Hessian is its derivative.
+TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
+  Random random{std::mt19937(3), {}};
+  for (const auto strain : {energy::StrainMeasure::logarithm, energy::StrainMeasure::printed}) {
+    const Ribbon ribbon = strip(false, 0, {true, false}, false);
+    const Chain chain = random_chain(ribbon, random), before = random_chain(ribbon, random);
+    ChainProblem problem = random_problem(ribbon, {energy::Elastic::wunderlich, 3, strain}, random);
+    add_viscosity(before, problem);
+    problem.loads.clear();
+    problem.base_fixed.fill(true);
+    math::ChainSystem system;
+    math::ChainWorkspace work;
+    math::ChainStep step;
+    const auto gradient = [&](const Chain& at) {
+      Kinematics k;
+      geometry::forward_kinematics(ribbon, at, k);
+      linearise(ribbon, problem, at, k, {}, system);
+      EXPECT_TRUE(chain_step(system, work, step));
+      VectorXd all(2 * ribbon.node_count());
+      for (std::size_t i = 0; i < work.gradient.size(); ++i)
+        all.segment<2>(2 * static_cast<Index>(i)) = work.gradient[i];
+      return all;
+    };
+    const VectorXd start = gradient(chain);
+    VectorXd d = VectorXd::Zero(6 + 2 * ribbon.node_count());
+    for (std::size_t i = 0; i < step.u.size(); ++i) d.segment<2>(6 + 2 * static_cast<Index>(i)) = step.u[i];
+    const double size = d.norm();
+    expect_derivative([&](double h) { return gradient(moved(chain, h / size * d)); }, -start / size);
   }
 }
 
