@@ -12,6 +12,8 @@ from program import PROGRAM, SCENES, ProgramTest, main
 # A light strip let go from straight; a second of it is done in a second or two.
 SWING = ["swing", "--set", "ribbon.segments=16", "--set", "solver.duration=0.5", "--formats", "none"]
 
+IMPLICIT = ["--set", "solver.method=implicit"]
+BAND = ["moebius", "--set", "solver={method: implicit, duration: 1}", "--set", "initial.shape=closed", "--formats", "none"]
 LOOP = ["moebius", "--set", "solver={method: two-stage, duration: 8, time_step: 0.02}", "--set",
         "initial.shape=closed", "--set", "ribbon.segments=48", "--formats", "none"]
 
@@ -35,6 +37,19 @@ class Motion(ProgramTest):
                     self.assertLessEqual(row["max_torsion_mismatch"], 1e-6)
                     self.assertLess(row["max_ruling_ratio"], 1)
                     self.assertLess(row["area_error"], 1e-2)
+
+    def test_shipped_motions_by_the_implicit_method_are_exact_at_every_step(self):
+        for scene in sorted(SCENES.glob("*.yaml")):
+            if "method: two-stage" not in scene.read_text():
+                continue
+            with self.subTest(scene=scene.stem):
+                self.expect(0, "run", scene.stem, "--out", "run", "--formats", "none", *IMPLICIT, "--set",
+                            "solver.duration=0.2")
+                for row in self.history():
+                    self.assertLessEqual(row["max_length_error"], 1e-12)
+                    self.assertLessEqual(row["max_torsion_mismatch"], 1e-12)
+                    self.assertLess(row["max_ruling_ratio"], 1)
+                    self.assertLess(row["area_error"], 1e-10)
 
     def test_undamped_motion_keeps_its_energy(self):
         self.expect(0, "run", *SWING, "--out", "run")
@@ -62,8 +77,9 @@ class Motion(ProgramTest):
         self.fail(f"never stopped on its way: {message}")
 
     def test_interrupted_motion_goes_on_bit_for_bit(self):
-        for arguments in ([*SWING, "--set", "ribbon.segments=40"], LOOP):
-            with self.subTest(scene=arguments[0]):
+        fine = [*IMPLICIT, "--set", "solver.time_step=1e-4", "--set", "solver.duration=4"]
+        for arguments in ([*SWING, "--set", "ribbon.segments=40"], LOOP, [*SWING, *fine], [*BAND, *fine]):
+            with self.subTest(arguments=arguments):
                 self.interrupt(arguments)
                 self.expect(0, "run", arguments[0], "--out", "run", "--formats", "none", "--resume")
                 self.expect(0, "run", *arguments, "--out", "whole")
@@ -111,6 +127,9 @@ class Motion(ProgramTest):
         self.assertIn("linking number", result.stderr)
 
     def test_keys_of_the_other_method_are_refused(self):
+        self.expect_refused("check", "swing", "--set", "solver.integrator=bdf2", says=["two-stage", "implicit"])
+        self.expect_refused("check", "swing", *IMPLICIT, "--set", "solver.weight_scale=3", says=["implicit", "two-stage"])
+        self.expect_refused("check", "swing", *IMPLICIT, "--set", "solver.damping.factor_normal=0.9", says="rates")
         for setting in ("solver.time_step=0.01", "initial.shape=coil", "solver.damping={normal: 1}"):
             self.expect_refused("check", "strip.yaml", "--set", setting, says="equilibrium")
         self.expect_refused("check", "swing", "--set", "solver.tolerance=1e-8", says=["two-stage", "tolerance"])

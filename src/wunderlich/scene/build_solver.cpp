@@ -137,7 +137,8 @@ solver::implicit::Options implicit_of(const Cell& cell) {
   const Cell iterations = child(cell, "max_iterations"), damping = child(cell, "damping");
   options.tolerance = number_or(child(cell, "tolerance"), options.tolerance);
   if (iterations.value != nullptr) options.max_iterations = static_cast<int>(integer(iterations));
-  options.error = number_or(child(cell, "error"), 0);
+  options.error = number_or(child(cell, "error"), options.error);
+  options.barrier = number_or(child(cell, "barrier"), options.barrier);
   for (const char* factor : {"factor_tangent", "factor_normal"}) {
     if (child(damping, factor).value != nullptr) {
       fail(child(damping, factor), "depends on the step; the implicit method knows the rates `tangent` and `normal`");
@@ -185,7 +186,7 @@ SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon,
   const Cell iterations = child(cell, "max_iterations");
   options.tolerance = number_or(child(cell, "tolerance"), options.tolerance);
   if (iterations.value != nullptr) options.max_iterations = static_cast<int>(integer(iterations));
-  options.barrier = number_or(child(cell, "barrier"), options.method == Method::implicit ? 1e-3 : options.barrier);
+  options.barrier = number_or(child(cell, "barrier"), options.barrier);
   options.time_step = number(child(cell, "time_step"));
   options.stop_at_rest = boolean(child(cell, "stop_at_rest"));
   if (options.method == Method::implicit) options.implicit = implicit_of(cell);

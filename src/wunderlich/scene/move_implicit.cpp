@@ -16,7 +16,6 @@ namespace {
 solver::PathProblem problem_of(const Scene& scene, double time) {
   solver::PathOptions options;
   options.model = scene.solver.energy;
-  options.barrier = scene.solver.barrier;
   constraint::Surroundings surroundings = scene.surroundings;
   auto& supports = surroundings.supports;
   supports.erase(std::remove_if(supports.begin(), supports.end(), [&](const auto& s) { return !holds(s, time); }),

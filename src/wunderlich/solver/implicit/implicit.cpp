@@ -66,6 +66,7 @@ void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
 void set_problem(const PathProblem& path, const Options& options, const Scheme& scheme, double t1, const State& state,
                  Chain& chain, ChainProblem& problem) {
   problem_at(path, state.path, t1, chain, problem);
+  problem.barrier = options.barrier;
   if (path.surroundings.supports.empty()) problem.base_fixed.fill(false);
   tie(path.ribbon, options.kinetic, scheme, state.points, state.path.chain.eta, problem);
   problem.viscosity = options.viscosity / scheme.h;
@@ -160,7 +161,7 @@ State start(const PathProblem& path, const Options& options, const geometry::Sta
   for (std::size_t i = n + 1; i < state.points.v.size(); ++i) state.points.v[i] = spin.cross(state.points.x[i]);
   ChainProblem& problem = work.problem;
   problem_at(path, state.path, shape.time, state.path.chain, problem);
-  problem.barrier = path.options.barrier;
+  problem.barrier = options.barrier;
   const ObjectiveValue value = objective(path.ribbon, problem, state.path.chain, work.kinematics, work.kinematics);
   state.elastic = value.elastic + value.barrier;
   state.peak = kinetic_energy(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
