@@ -60,6 +60,16 @@ ChainSystem random_system(int links, const std::array<bool, 6>& base_fixed, doub
     link.hess_bb = h.bottomRightCorner<2, 2>();
     system.links.push_back(link);
   }
+  for (int i = 0; i < links; ++i) {
+    const Vec3 force = random.vector();
+    const Mat3 hessian = random.symmetric(3, softness), geometric = random.symmetric(3, softness);
+    math::TurnTerm term;
+    for (int a = 0; a < 3; ++a) {
+      term.hessian[a] = math::four(hessian.row(a), force[a]);
+      term.geometric[a] = math::four(geometric.row(a));
+    }
+    system.turns.push_back(term);
+  }
   for (const int node : {links, links / 2, 0}) {
     math::PoseTerm term;
     term.node = node;

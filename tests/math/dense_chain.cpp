@@ -85,6 +85,17 @@ DenseChain dense_chain(const ChainSystem& system) {
     out.hessian += pose.transpose() * term.hessian * pose;
     out.gradient += pose.transpose() * term.gradient;
   }
+  for (std::size_t i = 0; i < system.turns.size(); ++i) {
+    const MatrixXd theta = poses[i].bottomRows<3>();
+    for (int a = 0; a < 3; ++a) {
+      const math::TurnTerm& term = system.turns[i];
+      for (int b = 0; b < 3; ++b) {
+        out.hessian += (term.hessian[a][b] + (system.geometric ? term.geometric[a][b] : 0.0)) *
+                       theta.row(a).transpose() * theta.row(b);
+      }
+      out.gradient += term.hessian[a][3] * theta.row(a).transpose();
+    }
+  }
   add_links(system, out);
   add_rows(system, poses, out);
   for (Index k = 0; k < size; ++k) {

@@ -70,6 +70,8 @@ ChainProblem random_problem(const Ribbon& ribbon, const energy::Model& model, Ra
     Mat3 root, anchor;
     root << random.vector(), random.vector(), random.vector();
     anchor << random.vector(), random.vector(), random.vector();
+    problem.turn_tie.push_back(1.5 + random());
+    problem.turn_anchor.push_back(random.vector());
     problem.facets.push_back({root * root.transpose(), anchor});
   }
   problem.loads = {{ribbon.segments, LoadFrame::material, random.vector(), random.vector()},

@@ -137,6 +137,7 @@ class Sweep {
       const ChainLink& link = system_.links[k];
       add_pose_parts(system_, i, next, value, columns_);
       add_node(link, share, value);
+      if (k < system_.turns.size()) add_turn(system_.turns[k], share, system_.geometric, value);
       pass_joint(link, system_.geometric, value, columns_);
       if (i == 0) add_first_u(value);
       if (!eliminate(k, share, value, step)) return false;

@@ -56,11 +56,18 @@ struct PoseTerm {
   Mat3 geometric = Mat3::Zero();  ///< further Hessian in theta, of terms that carry forces
 };
 
+/// A term in the rotation of one link alone, as the sweep keeps it: rows of symmetric matrices in theta.
+struct TurnTerm {
+  Four hessian[3];    ///< the fourth lanes are the gradient
+  Four geometric[3];  ///< further Hessian of terms that carry forces; the fourth lanes are 0
+};
+
 /// One linearised problem.
 struct ChainSystem {
   std::vector<ChainLink> links;        ///< N + 1 entries; the last has no link, only joint and node
   std::vector<ChainRow> rows;          ///< probes, then constraints; each sorted by decreasing node
   std::vector<PoseTerm> pose_terms;    ///< sorted by decreasing node
+  std::vector<TurnTerm> turns;         ///< (N) or none, of the links with a span
   Eigen::MatrixXd follower;            ///< (probes x probes) unsymmetric part of the Hessian, in the
                                        ///< coordinates of as many probe rows: loads without a potential
   std::array<bool, 6> base_fixed{};    ///< v (3), theta (3) of the base

@@ -81,6 +81,13 @@ inline void add_pose_term(const PoseTerm& term, double share, bool geometric, Va
   value.torque += four(term.gradient.tail<3>());
 }
 
+inline void add_turn(const TurnTerm& term, double share, bool geometric, Value& value) {
+  const Four shares{1, 1, 1, share};
+  for (int i = 0; i < 3; ++i) value.tt[i] += shares * term.hessian[i];
+  for (int i = 0; i < 3 && geometric; ++i) value.tt[i] += term.geometric[i];
+  value.torque += Four{term.hessian[0][3], term.hessian[1][3], term.hessian[2][3], 0};
+}
+
 /// A pose term's or row's share at its link; row k is constraint column k.
 template <int Q>
 void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Columns<Q>& columns) {

@@ -46,6 +46,8 @@ struct ChainProblem {
   std::vector<PointLoad> loads;             ///< sorted by decreasing node
   std::vector<double> tie;                  ///< (segments + 1) or none: (tie/2) |r - anchor|^2 of each node [N/m]
   std::vector<Vec3> anchor;                 ///< (segments + 1) or none
+  std::vector<double> turn_tie;             ///< (segments) or none: (tie/2) |d2 - anchor|^2 of each segment [N m]
+  std::vector<Vec3> turn_anchor;            ///< (segments) or none
   std::vector<FacetTie> facets;             ///< (segments) or none
   double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
   const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0

@@ -1,6 +1,7 @@
 #include "wunderlich/solver/chain_ties.hpp"
 
 #include "wunderlich/energy/joint_energy.hpp"
+#include "wunderlich/math/four.hpp"
 #include "wunderlich/math/rotation.hpp"
 
 namespace wunderlich::solver {
@@ -9,6 +10,7 @@ using geometry::Chain;
 using geometry::Kinematics;
 using geometry::Ribbon;
 using math::ChainLink;
+using math::Four;
 
 namespace {
 
@@ -39,6 +41,25 @@ math::PoseTerm facet_term(const Ribbon& ribbon, const FacetTie& tie, const Kinem
   term.hessian.bottomLeftCorner<3, 3>() = term.hessian.topRightCorner<3, 3>().transpose();
   term.hessian.bottomRightCorner<3, 3>() = products.trace() * Mat3::Identity() - products;
   term.geometric = 0.5 * (forces + forces.transpose()) - forces.trace() * Mat3::Identity();
+  return term;
+}
+
+/// d2 turns with its segment. With d2 = d, its anchor a and the tie m, exactly m (a.d I - (a d^T + d a^T)/2), of which
+/// m (I - d d^T) carries no force.
+inline math::TurnTerm turn_term(double tie, const Vec3& anchor, const Vec3& width) {
+  const Four d = math::four(width), m = math::all(tie), a = m * math::four(anchor), gradient = math::cross(a, d);
+  const Four half_gap = math::all(0.5) * (m * d - a);
+  const double force = 2 * math::dot3(half_gap, d);
+  math::TurnTerm term;
+  for (int i = 0; i < 3; ++i) {
+    const Four md = math::all(tie * width[i]), di = math::all(width[i]);
+    term.hessian[i] = math::last_lane(gradient[i]) - md * d;
+    term.geometric[i] = di * half_gap + math::all(half_gap[i]) * d;
+  }
+  const Four x{1, 0, 0, 0}, y{0, 1, 0, 0}, z{0, 0, 1, 0};
+  const Four f = math::all(force);
+  term.hessian[0] += m * x, term.hessian[1] += m * y, term.hessian[2] += m * z;
+  term.geometric[0] -= f * x, term.geometric[1] -= f * y, term.geometric[2] -= f * z;
   return term;
 }
 
@@ -81,6 +102,9 @@ double tie_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain&
   for (std::size_t i = 0; i < problem.tie.size(); ++i) {
     value += 0.5 * problem.tie[i] * (k.r[i] - problem.anchor[i]).squaredNorm();
   }
+  for (std::size_t i = 0; i < problem.turn_tie.size(); ++i) {
+    value += 0.5 * problem.turn_tie[i] * (k.frame[i].col(1) - problem.turn_anchor[i]).squaredNorm();
+  }
   for (std::size_t i = 0; i < problem.facets.size(); ++i) {
     const FacetTie& tie = problem.facets[i];
     const Mat3 gap = facet_of(ribbon, k, i) - tie.anchor;
@@ -99,6 +123,10 @@ void add_ties(const Ribbon& ribbon, const ChainProblem& problem, const Chain& ch
   for (std::size_t i = 0; i < problem.tie.size(); ++i) {
     system.links[i].stiffness += problem.tie[i];
     system.links[i].force += problem.tie[i] * (k.r[i] - problem.anchor[i]);
+  }
+  system.turns.resize(problem.turn_tie.size());
+  for (std::size_t i = 0; i < problem.turn_tie.size(); ++i) {
+    system.turns[i] = turn_term(problem.turn_tie[i], problem.turn_anchor[i], k.frame[i].col(1));
   }
   for (std::size_t i = problem.facets.size(); i-- > 0;) {
     system.pose_terms.push_back(facet_term(ribbon, problem.facets[i], k, i));

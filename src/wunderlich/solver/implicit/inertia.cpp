@@ -1,5 +1,7 @@
 #include "wunderlich/solver/implicit/inertia.hpp"
 
+#include "wunderlich/energy/torsional_inertia.hpp"
+
 namespace wunderlich::solver::implicit {
 
 using geometry::Ribbon;
@@ -50,10 +52,17 @@ void tie(const Ribbon& ribbon, KineticEnergy kinetic, const Scheme& scheme, cons
   const auto n = static_cast<std::size_t>(ribbon.segments);
   problem.tie.resize(n + 1);
   problem.anchor.resize(n + 1);
-  problem.facets.resize(kinetic == KineticEnergy::centerline ? 0 : n);
+  const bool rotary = kinetic == KineticEnergy::rotary;
+  problem.turn_tie.resize(rotary ? n : 0);
+  problem.turn_anchor.resize(problem.turn_tie.size());
+  problem.facets.resize(kinetic == KineticEnergy::full ? n : 0);
   for (std::size_t i = 0; i <= n; ++i) {
     problem.tie[i] = kinetic == KineticEnergy::full ? 0 : scheme.stiffness * ribbon.node_mass[i];
     problem.anchor[i] = anchor(scheme, points, i);
+  }
+  for (std::size_t s = 0; s < problem.turn_tie.size(); ++s) {
+    problem.turn_tie[s] = scheme.stiffness * energy::turn_inertia(ribbon, s);
+    problem.turn_anchor[s] = anchor(scheme, points, n + 1 + s);
   }
   for (std::size_t s = 0; s < problem.facets.size(); ++s) {
     FacetTie& facet = problem.facets[s];
