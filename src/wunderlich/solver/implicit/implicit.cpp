@@ -19,7 +19,9 @@ constexpr std::array<double, 4> kRho{0.9, 0.6, 0.3, 0};  // what generalised-alp
 constexpr double kGrowth = 1e-3;       // of the energy in one step, over the largest kinetic energy: more is no motion
 constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
 constexpr int kCalmSteps = 50;         // before less damping is tried again
-constexpr double kProbe = 0.02;        // of the strip's own time: the step that finds accelerations
+constexpr int kInelastic = static_cast<int>(kRho.size());  // level of damping beyond those: Euler's
+constexpr double kProbe = 0.02;                            // of the strip's own time: the step that finds accelerations
+constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
 constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
 
 /// Time in which a wave of bending crosses the strip.
@@ -37,6 +39,7 @@ bool carries_frames(const PathProblem& path) {
 }
 
 Scheme scheme_of(const Options& options, const State& state, double h) {
+  if (state.level == kInelastic) return make_scheme(Integrator::euler, 0, h, 0);
   return make_scheme(options.integrator, kRho[static_cast<std::size_t>(state.level)], h, state.last_step);
 }
 
@@ -73,18 +76,20 @@ void set_problem(const PathProblem& path, const Options& options, const Scheme& 
   problem.before = options.viscosity > 0 ? &state.path.chain : nullptr;
 }
 
-/// Work of what moves the supports during the step, by the mean of the reactions before and after.
-double support_work(const ChainProblem& problem, const State& state, const Chain& start, const Workspace& work,
-                    const std::vector<double>& residuals) {
+/// Work of what moves the supports during the step, by the mean of the reactions before and after; Euler's by the
+/// reaction after, which it takes for the whole step.
+double support_work(const ChainProblem& problem, const Scheme& scheme, const State& state, const Chain& start,
+                    const Workspace& work, const std::vector<double>& residuals) {
+  const double after = scheme.kind == Integrator::euler ? 1 : 0.5;
   double sum = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double before = i < state.path.multipliers.size() ? state.path.multipliers[i] : work.multipliers[i];
-    sum += 0.5 * (before + work.multipliers[i]) * residuals[i];
+    sum += ((1 - after) * before + after * work.multipliers[i]) * residuals[i];
   }
   math::Vec6 way;
   way << start.base.position - state.path.chain.base.position,
       math::log_map(start.base.frame * state.path.chain.base.frame.conjugate());
-  const math::Vec6 reaction = 0.5 * (state.base_reaction + work.newton.sweep.base_gradient);
+  const math::Vec6 reaction = (1 - after) * state.base_reaction + after * work.newton.sweep.base_gradient;
   for (int c = 0; c < 6; ++c) {
     if (problem.base_fixed[static_cast<std::size_t>(c)]) sum += reaction[c] * way[c];
   }
@@ -136,9 +141,47 @@ std::string why(const NewtonReport& report, double t, double h) {
   return text + "energy grows";
 }
 
-/// Does generalised-alpha have more damping to offer?
+/// Is there more damping to offer? At last Euler's: its velocity is that of the step, so that it takes up an impulse
+/// without a rebound, which the others exaggerate at any step length.
 bool can_damp(const Options& options, const State& state) {
-  return options.integrator == Integrator::generalised_alpha && state.level + 1 < static_cast<int>(kRho.size());
+  return options.integrator != Integrator::euler && state.level < kInelastic;
+}
+
+int damp_more(const Options& options, int level) {
+  return options.integrator == Integrator::generalised_alpha ? level + 1 : kInelastic;
+}
+
+/// Length of a step that finds accelerations: short against the strip's own time, long against rounding.
+double probe_step(const PathProblem& path, const State& state) {
+  const double segment = path.ribbon.length / path.ribbon.segments, g = path.surroundings.gravity.norm();
+  double h = kProbe * own_time(path.ribbon) / path.ribbon.segments;
+  if (g > 0) h = std::min(h, kProbeShare * std::sqrt(segment / g));
+  if (state.last_step > 0) h = std::min(h, kProbeShare * state.last_step);
+  return h;
+}
+
+/// A strip that may float where it likes: how far it floats in a step is a linear equation, which Newton's last step
+/// solves at the iterate before. Solved here at the last one, so that linear momentum is kept to rounding.
+void float_freely(const Ribbon& ribbon, const ChainProblem& problem, Chain& chain, geometry::Kinematics& k) {
+  if (!problem.holds.empty() || !problem.loads.empty()) return;
+  Vec3 force = Vec3::Zero();
+  double stiffness = 0;
+  for (std::size_t i = 0; i < problem.tie.size(); ++i) {
+    force += problem.force[i] - problem.tie[i] * (k.r[i] - problem.anchor[i]);
+    stiffness += problem.tie[i];
+  }
+  for (std::size_t s = 0; s < problem.facets.size(); ++s) {
+    const FacetTie& facet = problem.facets[s];
+    Mat3 now;
+    now << k.r[s] + 0.5 * ribbon.rest_length[s] * k.frame[s].col(2), k.frame[s].col(2), k.frame[s].col(1);
+    force -= (now - facet.anchor) * facet.weight.col(0);
+    stiffness += facet.weight(0, 0);
+  }
+  for (int c = 0; c < 3; ++c) {
+    if (problem.base_fixed[static_cast<std::size_t>(c)]) continue;
+    chain.base.position[c] += force[c] / stiffness;
+    for (Vec3& r : k.r) r[c] += force[c] / stiffness;
+  }
 }
 
 }  // namespace
@@ -170,8 +213,8 @@ State start(const PathProblem& path, const Options& options, const geometry::Sta
 }
 
 void find_accelerations(const PathProblem& path, const Options& options, State& state, Workspace& work) {
-  // A short Euler step that is thrown away; short against the strip's own time, long against rounding.
-  const double h = kProbe * own_time(path.ribbon) / path.ribbon.segments;
+  // A short Euler step that is thrown away.
+  const double h = probe_step(path, state);
   const Scheme scheme = make_scheme(Integrator::euler, 0, h, 0);
   work.trial = state.path.chain;
   set_problem(path, options, scheme, state.path.t + h, state, work.trial, work.problem);
@@ -181,6 +224,8 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   newton.tolerance = 1e-10;
   state.last_step = 0;
   state.path.multipliers.clear();
+  std::fill(state.points.a.begin(), state.points.a.end(), Vec3::Zero());
+  state.points.acceleration = state.points.a;
   const NewtonReport report = minimise(path.ribbon, work.problem, newton, work.trial, work.multipliers, work.newton);
   if (!report.converged()) return;  // from rest, then
   read_points(path.ribbon, options.kinetic, work.newton.kinematics, work.x);
@@ -208,7 +253,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   StepReport report;
   const int level = state.level;
   const double kinetic0 = kinetic_energy(ribbon, options.kinetic, state.points, state.path.chain.eta);
-  for (;; ++state.level, ++report.repeats) {
+  for (;; state.level = damp_more(options, state.level), ++report.repeats) {
     const Scheme scheme = scheme_of(options, state, h);
     predict(ribbon, state, h, work.trial);
     set_problem(path, options, scheme, t1, state, work.trial, work.problem);
@@ -226,6 +271,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
       report.failure = why(report.newton, t1, h);
       return report;
     }
+    float_freely(ribbon, work.problem, work.trial, work.newton.kinematics);
     read_points(ribbon, options.kinetic, work.newton.kinematics, work.x);
     work.points = state.points;
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
@@ -233,15 +279,15 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier;
     const double growth = elastic1 - state.elastic + kinetic1 - kinetic0 -
                           load_work(work.problem, state.points.x, work.x) -
-                          support_work(work.problem, state, work.start, work, work.residuals);
+                          support_work(work.problem, scheme, state, work.start, work, work.residuals);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state)) continue;
     if (grows || (options.error > 0 && report.error > options.error)) {
       state.level = level;
-      report.failure =
-          grows ? "the energy grows by " + std::to_string(growth) + " J in a step of " + std::to_string(h) + " s"
-                : "local error " + std::to_string(report.error);
+      report.failure = grows ? "the energy grows by " + std::to_string(growth / peak) +
+                                   " of the largest kinetic energy in a step of " + std::to_string(h) + " s"
+                             : "local error " + std::to_string(report.error);
       return report;
     }
     state.peak = peak;
@@ -261,6 +307,11 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   state.path.iterations += report.iterations;
   if (carries_frames(path)) note_frames(path, state.path);
   drag(ribbon, options, h, work.newton.kinematics, state.points);
+  report.inelastic = state.level == kInelastic;
+  if (report.inelastic) {  // the accelerations of an impulse are nothing to go on with
+    state.level = level;
+    find_accelerations(path, options, state, work);
+  }
   report.accepted = true;
   return report;
 }

@@ -29,7 +29,7 @@ struct Scheme {
   double stiffness = 0;                                      ///< c [1/s^2]
   double x0 = 1, v0 = 0, a0 = 0, true0 = 0, xb = 0, vb = 0;  ///< the anchor as a combination of what is kept
   double alpha_m = 0, alpha_f = 0, beta = 0, gamma = 0;      ///< generalised-alpha
-  double error = 0;                                          ///< local error: times the change of acceleration [s^2]
+  double error = 0;  ///< local error: times the change of acceleration, Euler: times acceleration [s^2]
 };
 
 /// `h_before`: the step before, 0 if there was none (BDF2 then starts with Euler). `rho`: share of the fastest

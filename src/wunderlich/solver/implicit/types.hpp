@@ -36,11 +36,12 @@ struct State {
 
 struct StepReport {
   bool accepted = false;
-  std::string failure;  ///< why not; empty if accepted
-  NewtonReport newton;  ///< of the last minimisation
-  int iterations = 0;   ///< of all
-  int repeats = 0;      ///< minimisations thrown away, because the energy grew
-  double error = 0;     ///< estimate of the local error over the length
+  std::string failure;     ///< why not; empty if accepted
+  NewtonReport newton;     ///< of the last minimisation
+  int iterations = 0;      ///< of all
+  int repeats = 0;         ///< minimisations thrown away, because the energy grew
+  bool inelastic = false;  ///< taken by Euler: an impulse, of a support that starts or a strip that comes taut
+  double error = 0;        ///< estimate of the local error over the length
 };
 
 }  // namespace wunderlich::solver::implicit

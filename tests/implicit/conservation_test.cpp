@@ -1,0 +1,84 @@
+// Energy of swings, momenta of free flight.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "implicit/motions.hpp"
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::testing {
+namespace {
+
+/// Largest change of the energy in 3 s at 1 ms, over the largest kinetic energy.
+double drift(double tilt) {
+  Motion m = swing(1e-2, tilt);
+  const double before = total_energy(m);
+  double most = 0;
+  for (int i = 1; i <= 3000; ++i) {
+    EXPECT_TRUE(move_to(1e-3 * i, m)) << m.failure;
+    most = std::max(most, std::abs(total_energy(m) - before));
+  }
+  EXPECT_EQ(m.halvings, 0);
+  EXPECT_GT(m.state.peak, 1e-6);
+  return most / m.state.peak;
+}
+
+TEST(Energy, OfAGentleSwingInThePlaneIsKept) {
+  const double change = drift(0);
+  show("energy drift of the plane swing", change, 3e-5);
+  EXPECT_LE(change, 3e-5);
+}
+
+/// Where the strip passes its flat state its rulings jump, and what is lost there no step brings back.
+TEST(Energy, OfATiltedSwingIsLostAtTheFlatState) {
+  const double change = drift(0.3);
+  show("energy drift of the tilted swing", change, 5e-2);
+  EXPECT_LE(change, 5e-2);
+}
+
+/// A bent, twisted strip thrown with a spin, without gravity.
+void fly(implicit::KineticEnergy kinetic) {
+  Motion m = make_motion(sheet(2.7e-4, false), {});
+  m.options.kinetic = kinetic;
+  geometry::Chain chain = geometry::straight_chain(m.path.ribbon, {Vec3::Zero(), math::exp_map(Vec3(0.2, 1.3, 0.1))});
+  for (std::size_t i = 1; i < 50; ++i) {
+    const double u = static_cast<double>(i) / 50;
+    chain.kappa[i] = 6 * std::sin(3.14159 * u);
+    chain.eta[i] = 0.2 * std::sin(2 * 3.14159 * u);
+  }
+  geometry::State shape = geometry::state_of(m.path.ribbon, chain, 0);
+  const Vec3 spin(3, -2, 5);
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& r : shape.r) middle += r / static_cast<double>(shape.r.size());
+  for (std::size_t i = 0; i < shape.r.size(); ++i)
+    shape.r_dot[i] = Vec3(0.3, -0.5, 0.2) + spin.cross(shape.r[i] - middle);
+  start(shape, spin, m);
+  const auto momentum = [&] {
+    return implicit::momentum(m.path.ribbon, m.options.kinetic, m.state.points, m.state.path.chain.eta);
+  };
+  const implicit::Momentum before = momentum();
+  double linear = 0, angular = 0;
+  for (int i = 1; i <= 1000; ++i) {
+    ASSERT_TRUE(move_to(1e-3 * i, m)) << m.failure;
+    const implicit::Momentum now = momentum();
+    linear = std::max(linear, (now.linear - before.linear).norm() / before.linear.norm());
+    angular = std::max(angular, (now.angular - before.angular).norm() / before.angular.norm());
+  }
+  show("linear momentum", linear, 1e-9);
+  show("angular momentum", angular, 3e-4);
+  // With the inertia of whole facets, what a moving ruling hands from one to the next is left out: measured 0.12, 0.23.
+  const bool full = kinetic == implicit::KineticEnergy::full;
+  EXPECT_LE(linear, full ? 0.3 : 1e-9);
+  EXPECT_LE(angular, full ? 0.5 : 3e-4);
+  EXPECT_NEAR(m.state.path.t, 1, 1e-9);
+}
+
+TEST(FreeFlight, KeepsItsMomenta) {
+  for (const auto kinetic :
+       {implicit::KineticEnergy::centerline, implicit::KineticEnergy::rotary, implicit::KineticEnergy::full}) {
+    fly(kinetic);
+  }
+}
+
+}  // namespace
+}  // namespace wunderlich::testing
