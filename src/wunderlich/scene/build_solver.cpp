@@ -21,7 +21,7 @@ void check_use(const Cell& solver, Method method) {
       {{Method::equilibrium}, {"steps"}},
       {newton, {"tolerance", "max_iterations", "barrier"}},
       {motion, {"time_step", "stop_at_rest", "damping"}},
-      {{Method::implicit}, {"integrator", "kinetic_energy", "error"}},
+      {{Method::implicit}, {"integrator", "kinetic_energy", "conserve", "error"}},
       {{Method::two_stage},
        {"form", "projection", "minimiser", "weight_scale", "step_size", "substeps", "torsional_inertia",
         "inertia_form"}}};
@@ -147,6 +147,8 @@ solver::implicit::Options implicit_of(const Cell& cell) {
   options.drag_tangent = number(child(damping, "tangent"));
   options.drag_normal = number(child(damping, "normal"));
   options.viscosity = number(child(damping, "material"));
+  options.conserve = boolean(child(cell, "conserve"));
+  if (options.conserve && options.viscosity > 0) fail(child(cell, "conserve"), "contradicts `damping.material`");
   return options;
 }
 

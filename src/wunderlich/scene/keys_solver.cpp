@@ -73,6 +73,16 @@ const std::vector<Key> table = {
      {"centerline", "rotary", "full"},
      "Implicit: masses on the centerline, as in the paper; and the inertia of the width; or every facet as the plate "
      "that it is."},
+    {"solver.conserve",
+     Type::boolean,
+     "",
+     0,
+     0,
+     "false",
+     {},
+     "Implicit: correct the velocities after each step so that energy, and momenta of a strip on which nothing acts, "
+     "are "
+     "kept exactly."},
     {"solver.error",
      Type::number,
      "",

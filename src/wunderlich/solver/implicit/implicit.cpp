@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/implicit/conserve.hpp"
 #include "wunderlich/solver/load_step.hpp"
 #include "wunderlich/solver/path_step.hpp"
 
@@ -141,6 +142,19 @@ std::string why(const NewtonReport& report, double t, double h) {
   return text + "energy grows";
 }
 
+/// Corrects the velocities of the step under way so that the energy has not grown.
+void keep_conserved(const Ribbon& ribbon, const Options& options, double growth, State& state, Workspace& work) {
+  const ChainProblem& problem = work.problem;
+  const bool held = !problem.holds.empty() || problem.base_fixed[0] || problem.base_fixed[3];
+  const bool pushed =
+      !problem.loads.empty() || options.drag_tangent > 0 || options.drag_normal > 0 ||
+      std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return !f.isZero(0); });
+  Conserved wanted;
+  wanted.kinetic = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta) - growth + state.missing;
+  if (!held && !pushed) wanted.momentum = &state.momentum;
+  state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.points);
+}
+
 /// Is there more damping to offer? At last Euler's: its velocity is that of the step, so that it takes up an impulse
 /// without a rebound, which the others exaggerate at any step length.
 bool can_damp(const Options& options, const State& state) {
@@ -208,6 +222,7 @@ State start(const PathProblem& path, const Options& options, const geometry::Sta
   const ObjectiveValue value = objective(path.ribbon, problem, state.path.chain, work.kinematics, work.kinematics);
   state.elastic = value.elastic + value.barrier;
   state.peak = kinetic_energy(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
+  state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   find_accelerations(path, options, state, work);
   return state;
 }
@@ -253,6 +268,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   StepReport report;
   const int level = state.level;
   const double kinetic0 = kinetic_energy(ribbon, options.kinetic, state.points, state.path.chain.eta);
+  double growth = 0;  // of the energy, beyond the work of loads and supports
   for (;; state.level = damp_more(options, state.level), ++report.repeats) {
     const Scheme scheme = scheme_of(options, state, h);
     predict(ribbon, state, h, work.trial);
@@ -277,9 +293,8 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier;
-    const double growth = elastic1 - state.elastic + kinetic1 - kinetic0 -
-                          load_work(work.problem, state.points.x, work.x) -
-                          support_work(work.problem, scheme, state, work.start, work, work.residuals);
+    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - load_work(work.problem, state.points.x, work.x) -
+             support_work(work.problem, scheme, state, work.start, work, work.residuals);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state)) continue;
@@ -294,6 +309,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     state.elastic = elastic1;
     break;
   }
+  if (options.conserve) keep_conserved(ribbon, options, growth, state, work);
   state.calm = report.repeats > 0 ? 0 : state.calm + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
   state.before = state.path.chain;

@@ -18,6 +18,7 @@ struct Options {
   double drag_tangent = 0;  ///< rate [1/s] at which the velocity along the tangent decays, as in air
   double drag_normal = 0;   ///< the same across it
   double viscosity = 0;     ///< of the material: time by which stress lags behind bending (Kelvin-Voigt) [s]
+  bool conserve = false;    ///< correct the velocities so that energy, and momenta of a free strip, are kept exactly
   double error = 0;         ///< local error of a step that is accepted, over the length; 0: any
 };
 
@@ -31,6 +32,8 @@ struct State {
   int calm = 0;                                   ///< steps since it was raised
   double elastic = 0;                             ///< energy with the barrier, now [J]
   double peak = 0;                                ///< largest kinetic energy so far [J]
+  double missing = 0;                             ///< `conserve`: energy that is still to be put right [J]
+  Momentum momentum;                              ///< `conserve`: at the start
   math::Vec6 base_reaction = math::Vec6::Zero();  ///< of a held base: force and torque
 };
 
