@@ -24,6 +24,9 @@ ctest --preset sanitize-all -j "$(nproc)"
 echo "nightly: unit tests, 10 times in random order"
 GTEST_SHUFFLE=1 ctest --preset release -j "$(nproc)" --schedule-random --repeat until-fail:10
 
+echo "nightly: 100,000 random steps of the implicit method"
+WUNDERLICH_SOAK_STEPS=100000 build/release/test_implicit --gtest_filter=Soak.Long
+
 echo "nightly: 30 minutes of fuzzing"
 tools/fuzz.sh 1800
 

@@ -65,23 +65,9 @@ TEST(Exactness, OfAMoebiusLoopInMotion) {
 }
 
 TEST(Exactness, OfAStripWhoseClampTurnsAndLetsGo) {
-  geometry::RibbonSpec spec = sheet(2.7e-4, true);
-  spec.clamped = {true, true};
-  constraint::Surroundings held;
-  constraint::Support end = moving_clamp(50, level_clamp(spec, 50).motion.keys[0].pose, Vec3(0.29, 0, 0), 0);
-  held.supports = {level_clamp(spec, 0), end};
-  // From a bow: a flat strip between clamps can neither be pushed together nor twisted at a finite speed.
-  const PathEnd bow = run_path(spec, held, {});
-  ASSERT_TRUE(bow.done) << bow.failure;
-  const Pose from{bow.shape.r.back(), bow.shape.end_frame[1]};
-  end = clamp(50, from);
-  end.motion.keys.push_back({0.3, {from.position - Vec3(0.06, 0, -0.02), from.frame}, 2});
-  held.supports.back() = end;
-  held.gravity = Vec3(0, 1, -9.7);
-  Motion m = make_motion(spec, held);
-  geometry::State shape = bow.shape;
-  shape.time = 0;
-  start(shape, Vec3::Zero(), m);
+  Motion m = between_clamps();
+  const constraint::Surroundings held = m.path.surroundings;
+  const constraint::Support end = held.supports.back();
   Exactness worst;
   double apart = 0;
   for (int i = 1; i <= 200; ++i) {
@@ -92,7 +78,7 @@ TEST(Exactness, OfAStripWhoseClampTurnsAndLetsGo) {
   show("prescribed end, lengths and rad", apart, 1e-10);
   EXPECT_LE(apart, 1e-10);
 
-  spec.clamped = {true, false};
+  const geometry::RibbonSpec spec = sheet(2.7e-4, true);
   constraint::Surroundings released = held;
   released.supports.pop_back();
   const solver::PathProblem before = m.path;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "solver/paths.hpp"
 #include "wunderlich/constraint/errors.hpp"
 #include "wunderlich/energy/motion.hpp"
 #include "wunderlich/geometry/surface.hpp"
@@ -68,6 +69,25 @@ Motion swing(double bending_stiffness, double tilt) {
   surroundings.gravity = 9.81 * Vec3(0, std::sin(tilt), -std::cos(tilt));
   Motion motion = make_motion(spec, surroundings);
   start(motion);
+  return motion;
+}
+
+Motion between_clamps() {
+  geometry::RibbonSpec spec = sheet(2.7e-4, true);
+  spec.clamped = {true, true};
+  const Pose level = level_clamp(spec, 50).motion.keys[0].pose;
+  constraint::Surroundings held;
+  held.supports = {level_clamp(spec, 0), moving_clamp(50, level, Vec3(0.29, 0, 0), 0)};
+  const PathEnd bow = run_path(spec, held, {});
+  EXPECT_TRUE(bow.done) << bow.failure;
+  const Pose from{bow.shape.r.back(), bow.shape.end_frame[1]};
+  held.supports.back() = clamp(50, from);
+  held.supports.back().motion.keys.push_back({0.3, {from.position - Vec3(0.06, 0, -0.02), from.frame}, 2});
+  held.gravity = Vec3(0, 1, -9.7);
+  Motion motion = make_motion(spec, held);
+  geometry::State shape = bow.shape;
+  shape.time = 0;
+  start(shape, Vec3::Zero(), motion);
   return motion;
 }
 

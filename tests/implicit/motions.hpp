@@ -33,6 +33,10 @@ Motion make_motion(const geometry::RibbonSpec& spec, const constraint::Surroundi
 /// bending by `tilt` [rad].
 Motion swing(double bending_stiffness, double tilt);
 
+/// A sheet of D = 2.7e-4 bowed between two clamps, one of which begins to move and to turn: 0.06 in and 2 rad in 0.3 s.
+/// (Flat, it could neither be pushed together nor twisted at a finite speed.)
+Motion between_clamps();
+
 /// Sets the strip going from a shape, the straight one if none is given.
 void start(Motion& motion);
 void start(const geometry::State& shape, const Vec3& spin, Motion& motion);
