@@ -45,18 +45,21 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::fre
 namespace wunderlich::testing {
 namespace {
 
-/// Steps that are accepted at once: what they allocate after the first few.
+/// What steps that are accepted at once allocate after the first few. (A step that is not says why, in a string.)
 void expect_none(double dt, Motion& m) {
   const double t = m.state.path.t;
   for (int i = 1; i <= 10; ++i) ASSERT_TRUE(move_to(t + dt * i, m)) << m.failure;
-  const int halvings = m.halvings;
-  const long before = allocations;
+  int at_once = 0;
+  long made = 0;
   for (int i = 11; i <= 60; ++i) {
-    if (!move_to(t + dt * i, m)) break;
+    const long before = allocations;
+    const int halvings = m.halvings;
+    ASSERT_TRUE(move_to(t + dt * i, m)) << m.failure;
+    if (m.halvings != halvings) continue;
+    made += allocations - before;
+    ++at_once;
   }
-  const long made = allocations - before;
-  EXPECT_EQ(m.halvings, halvings);  // a failure may say why
-  EXPECT_NEAR(m.state.path.t, t + 60 * dt, 1e-12);
+  EXPECT_GE(at_once, 40);
   EXPECT_EQ(made, 0);
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "implicit/motions.hpp"
 #include "solver/paths.hpp"

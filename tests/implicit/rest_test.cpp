@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "implicit/motions.hpp"
 #include "solver/paths.hpp"
@@ -74,7 +75,7 @@ Rest push_and_rest(const PathEnd& at, double speed, double drag, double dt, int 
 }
 
 void expect_same(const Rest& rest) {
-  show("most elastic energy on the way - 1", rest.most, 0);
+  std::printf("  most elastic energy on the way - 1: %.3g\n", rest.most);
   show("energy at rest - 1", rest.dynamic, 1e-6);
   show("energy polished - 1", rest.polished, 1e-6);
   EXPECT_GT(rest.most, 0.01);  // it has been away

@@ -21,6 +21,7 @@ constexpr double kGrowth = 1e-3;       // of the energy in one step, over the la
 constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
 constexpr int kCalmSteps = 50;         // before less damping is tried again
 constexpr int kInelastic = static_cast<int>(kRho.size());  // level of damping beyond those: Euler's
+constexpr double kShortened = 0.3;                         // of the last step: what is shorter may be inelastic
 constexpr double kProbe = 0.02;                            // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
 constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
@@ -77,11 +78,11 @@ void set_problem(const PathProblem& path, const Options& options, const Scheme& 
   problem.before = options.viscosity > 0 ? &state.path.chain : nullptr;
 }
 
-/// Work of what moves the supports during the step, by the mean of the reactions before and after; Euler's by the
-/// reaction after, which it takes for the whole step.
+/// Work of what moves the supports during the step, by the reactions before and after with the weights that the scheme
+/// itself gives to forces at either end: Euler takes those after for the whole step.
 double support_work(const ChainProblem& problem, const Scheme& scheme, const State& state, const Chain& start,
                     const Workspace& work, const std::vector<double>& residuals) {
-  const double after = scheme.kind == Integrator::euler ? 1 : 0.5;
+  const double after = scheme.kind == Integrator::bdf2 ? 0.5 : 1 - scheme.alpha_f;
   double sum = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double before = i < state.path.multipliers.size() ? state.path.multipliers[i] : work.multipliers[i];
@@ -155,14 +156,15 @@ void keep_conserved(const Ribbon& ribbon, const Options& options, double growth,
   state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.points);
 }
 
-/// Is there more damping to offer? At last Euler's: its velocity is that of the step, so that it takes up an impulse
-/// without a rebound, which the others exaggerate at any step length.
-bool can_damp(const Options& options, const State& state) {
-  return options.integrator != Integrator::euler && state.level < kInelastic;
-}
-
 int damp_more(const Options& options, int level) {
   return options.integrator == Integrator::generalised_alpha ? level + 1 : kInelastic;
+}
+
+/// Is there more damping to offer? At last Euler's: its velocity is that of the step, so that it takes up an impulse
+/// without a rebound, which the others exaggerate at any step length. First, shorter steps must have been no help.
+bool can_damp(const Options& options, const State& state, double h) {
+  if (options.integrator == Integrator::euler || state.level == kInelastic) return false;
+  return damp_more(options, state.level) < kInelastic || h <= kShortened * state.last_step || state.last_step == 0;
 }
 
 /// Length of a step that finds accelerations: short against the strip's own time, long against rounding.
@@ -297,7 +299,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
              support_work(work.problem, scheme, state, work.start, work, work.residuals);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
-    if (grows && can_damp(options, state)) continue;
+    if (grows && can_damp(options, state, h)) continue;
     if (grows || (options.error > 0 && report.error > options.error)) {
       state.level = level;
       report.failure = grows ? "the energy grows by " + std::to_string(growth / peak) +
