@@ -79,7 +79,10 @@ double kinetic_energy(const Ribbon& ribbon, KineticEnergy kinetic, const Points&
   for (std::size_t i = 0; i <= n && kinetic != KineticEnergy::full; ++i) {
     twice += ribbon.node_mass[i] * points.v[i].squaredNorm();
   }
-  for (std::size_t s = 0; s < n && kinetic != KineticEnergy::centerline; ++s) {
+  for (std::size_t s = 0; s < n && kinetic == KineticEnergy::rotary; ++s) {
+    twice += energy::turn_inertia(ribbon, s) * points.v[n + 1 + s].squaredNorm();
+  }
+  for (std::size_t s = 0; s < n && kinetic == KineticEnergy::full; ++s) {
     const Mat3 v = facet_of(ribbon, points.v, s);
     twice += (facet_moments(ribbon, kinetic, eta, s) * v.transpose() * v).trace();
   }
