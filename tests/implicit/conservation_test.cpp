@@ -1,6 +1,7 @@
 // Energy of swings, momenta of free flight.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "implicit/motions.hpp"

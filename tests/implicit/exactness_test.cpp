@@ -1,6 +1,7 @@
 // Constraints at every step: of a tilted swing, a loop in motion, a strip whose clamp moves and lets go.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

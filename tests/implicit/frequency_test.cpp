@@ -1,6 +1,7 @@
 // Small oscillations against theory: a cantilever in its plane, a ring out of its plane, where the strip twists.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

@@ -1,6 +1,7 @@
 // Motions that drag brings to rest, against the equilibrium solver: from where the motion ended, and from the start.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

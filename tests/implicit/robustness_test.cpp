@@ -121,6 +121,21 @@ TEST(Robustness, WhipsFromTheHorizontal) {
   }
 }
 
+TEST(Robustness, EveryIntegratorGoesThroughAWhip) {
+  const Material& paper = kMaterials[1];
+  const char* names[] = {"Euler", "BDF2", "alpha"};
+  for (const auto kind :
+       {implicit::Integrator::euler, implicit::Integrator::bdf2, implicit::Integrator::generalised_alpha}) {
+    for (const auto kinetic : {implicit::KineticEnergy::centerline, implicit::KineticEnergy::full}) {
+      Motion m = swing(paper.bending_stiffness, 0.3);
+      m.options.integrator = kind;
+      m.options.kinetic = kinetic;
+      start(m);
+      run(names[static_cast<int>(kind)], paper, 5e-3, 0.5, m);
+    }
+  }
+}
+
 double uniform(std::mt19937& engine) { return static_cast<double>(engine()) / 2147483648.0 - 1; }
 
 /// Paper between two clamps, one shaken at random, the other turned; half of the way on it lets go. Random forces act
