@@ -68,7 +68,7 @@ TEST(Allocation, TheCounterCounts) {
   std::vector<double> list(100, 1.0);
   std::vector<math::Four> aligned(100);
   Eigen::VectorXd matrix = Eigen::VectorXd::Constant(100, list[3]);
-  aligned[3][0] = matrix[3];
+  aligned[3] = math::all(matrix[3]);
   EXPECT_EQ(allocations - before, 3) << aligned[3][0];
 }
 
