@@ -18,20 +18,6 @@ constexpr double kPathBarrier =
     3e-2;  // e1 on the way (with less, twist-pi ends in a higher minimum); then the path's own
 constexpr double kSmallestStep = 1.0 / 1024;
 
-/// A flat strip between two held places can leave the plane either way, and its rulings are undetermined: a small
-/// bow and slope decide both.
-void seed(const Ribbon& ribbon, Chain& chain) {
-  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
-    const double phase = 2 * kPi * ribbon.node_u[i] / ribbon.length;
-    if (geometry::kappa_is_free(ribbon, static_cast<int>(i))) chain.kappa[i] = -0.3 / ribbon.length * std::cos(phase);
-    if (geometry::eta_is_free(ribbon, static_cast<int>(i))) chain.eta[i] = -0.1 * std::sin(phase);
-  }
-}
-
-bool is_flat(const Chain& chain) {
-  return std::all_of(chain.kappa.begin(), chain.kappa.end(), [](double k) { return k == 0; });
-}
-
 void note_origin(const PathProblem& path, PathState& state) {
   Kinematics k;
   geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
@@ -44,6 +30,19 @@ void note_origin(const PathProblem& path, PathState& state) {
 }
 
 }  // namespace
+
+bool is_flat(const Chain& chain, double length, double tolerance) {
+  return std::all_of(chain.kappa.begin(), chain.kappa.end(),
+                     [&](double kappa) { return std::abs(kappa) * length <= tolerance; });
+}
+
+void seed(const Ribbon& ribbon, Chain& chain) {
+  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
+    const double phase = 2 * kPi * ribbon.node_u[i] / ribbon.length;
+    if (geometry::kappa_is_free(ribbon, static_cast<int>(i))) chain.kappa[i] = -0.3 / ribbon.length * std::cos(phase);
+    if (geometry::eta_is_free(ribbon, static_cast<int>(i))) chain.eta[i] = -0.1 * std::sin(phase);
+  }
+}
 
 Phase next_phase(const PathProblem& path, Phase phase) {
   const bool alone = path.surroundings.supports.empty() && path.surroundings.loads.empty();
@@ -121,7 +120,7 @@ bool solve_at(const PathProblem& path, PathState& state, double t, const Proxima
   problem_at(path, state, t, chain, problem);
   NewtonOptions options = newton_options(path);
   if (proximal.passes > 0) {
-    if (is_flat(chain)) seed(ribbon, chain);
+    if (is_flat(chain, ribbon.length, 0)) seed(ribbon, chain);
     const double l = ribbon.length;
     problem.barrier = std::max(problem.barrier, kPathBarrier);
     const double mass = proximal.mass * ribbon.bending_stiffness * ribbon.width / (l * l * l * l);

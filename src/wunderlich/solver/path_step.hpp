@@ -18,6 +18,13 @@ std::string why(const NewtonReport& report, const PathState& state);
 
 NewtonOptions newton_options(const PathProblem& path);
 
+/// Is no hinge folded by more than `tolerance` over the strip's length?
+bool is_flat(const geometry::Chain& chain, double length, double tolerance);
+
+/// A flat strip between two held places can leave the plane either way, and its rulings are undetermined: a small
+/// bow and slope decide both.
+void seed(const geometry::Ribbon& ribbon, geometry::Chain& chain);
+
 /// Fictitious mass of a proximal step, in units of D w / l^4 per length; no passes: a static minimum.
 struct Proximal {
   int passes = 0;

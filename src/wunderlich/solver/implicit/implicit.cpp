@@ -24,6 +24,7 @@ constexpr int kInelastic = static_cast<int>(kRho.size());  // level of damping b
 constexpr double kShortened = 0.3;                         // of the last step: what is shorter may be inelastic
 constexpr double kProbe = 0.02;                            // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
+constexpr double kFlat = 1e-4;       // curvature over 1/length that counts as none
 constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
 
 /// Time in which a wave of bending crosses the strip.
@@ -274,6 +275,8 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   for (;; state.level = damp_more(options, state.level), ++report.repeats) {
     const Scheme scheme = scheme_of(options, state, h);
     predict(ribbon, state, h, work.trial);
+    // Between two held places a flat strip has no direction to go in: Newton's method starts beside it.
+    if (path.surroundings.supports.size() > 1 && is_flat(work.trial, ribbon.length, kFlat)) seed(ribbon, work.trial);
     set_problem(path, options, scheme, t1, state, work.trial, work.problem);
     work.multipliers = state.path.multipliers;
     work.multipliers.resize(row_count(work.problem), 0.0);
