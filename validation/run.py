@@ -107,7 +107,7 @@ def main():
             print(f"{path}: {path.stat().st_size // 1000} kB")
     failures = sum(not row.ok for rows in results.values() for row in rows)
     print(f"validation: {failures} failed" if failures else "validation: every row is within its bound")
-    return failures
+    return min(failures, 100)  # of exit codes 256 would be none
 
 
 if __name__ == "__main__":

@@ -88,7 +88,9 @@ TEST(Exactness, OfAStripWhoseClampTurnsAndLetsGo) {
   const double energy = total_energy(m);
   implicit::change_supports(before, m.path, m.state);
   implicit::find_accelerations(m.path, m.options, m.state, m.work);
-  EXPECT_LE(std::abs(total_energy(m) - energy), 1e-12 * std::abs(energy));
+  const double lost = energy - total_energy(m);  // that of the clamp's own hinge
+  EXPECT_GE(lost, -1e-12 * std::abs(energy));
+  EXPECT_LE(lost, 0.2 * m.state.elastic);
   for (int i = 201; i <= 400; ++i) {
     ASSERT_TRUE(move_to(2e-3 * i, m)) << m.failure;
     look(m, worst);

@@ -89,6 +89,22 @@ class Motion(ProgramTest):
                                  (self.folder / "whole/centerline.csv").read_bytes())
                 self.assertEqual(self.without_clock("run"), self.without_clock("whole"))
 
+    def test_a_motion_goes_on_after_a_release_that_no_frame_has_seen(self):
+        arguments = ["twist-release-stiff", *IMPLICIT, "--formats", "none", "--set", "clamps.1.release=0.001", "--set",
+                     "solver.duration=2", "--set", "solver.time_step=5e-4", "--set", "output.frames=2"]
+        self.interrupt(arguments)
+        self.expect(0, "run", arguments[0], "--out", "run", "--formats", "none", "--resume")
+        self.expect(0, "run", *arguments, "--out", "whole")
+        self.assertEqual((self.folder / "run/centerline.csv").read_bytes(), (self.folder / "whole/centerline.csv").read_bytes())
+
+    def test_drag_is_a_rate_whatever_the_integrator(self):
+        for integrator in ("generalised-alpha", "bdf2", "euler"):
+            drag = f"solver={{method: implicit, integrator: {integrator}, duration: 1, damping: {{normal: 1, tangent: 1}}}}"
+            self.expect(0, "run", "free-flight", "--out", "run", "--formats", "none", "--set", drag, "--set",
+                        "initial={shape: straight, velocity: [1, 2, 3]}", "--set", "solver.time_step=0.01")
+            rows = self.history()
+            self.assertAlmostEqual(rows[-1]["kinetic"] / rows[0]["kinetic"] * math.exp(2), 1, delta=0.05, msg=integrator)
+
     def turn_after(self, steps, inertia):
         """By what the end frame of the free strip has turned since the start [rad]."""
         step = 2e-4

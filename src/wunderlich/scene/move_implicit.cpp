@@ -28,7 +28,7 @@ void visit_all(double& repeats, implicit::State& state, const Visit& visit) {
   const auto whole = [&](int& number) {
     double real = number;
     visit(real);
-    number = static_cast<int>(real);
+    number = real >= 0 && real < 1e6 ? static_cast<int>(real) : 0;
   };
   const auto vectors = [&](auto& list) {
     for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
@@ -83,20 +83,20 @@ class ImplicitMover : public Mover {
 
   std::vector<double> pack() const override {
     std::vector<double> out = pack_cursor(state_.path);
-    out.insert(out.begin(), static_cast<double>(out.size()));
+    out.insert(out.begin(), {state_.path.t, static_cast<double>(out.size())});
     implicit::State state = state_;
     double repeats = repeats_;
     visit_all(repeats, state, [&](double number) { out.push_back(number); });
     return out;
   }
 
-  void unpack(const geometry::State& shape, const std::vector<double>& numbers) override {
+  void unpack(const geometry::State&, const std::vector<double>& numbers) override {
     const auto broken = [] { throw InputError("checkpoint: the stored solver state does not fit the stored scene"); };
-    problem_ = problem_of(scene_, shape.time);
-    if (numbers.empty() || !(numbers[0] >= 0 && numbers[0] < static_cast<double>(numbers.size()))) broken();
-    const auto end = numbers.begin() + 1 + static_cast<std::ptrdiff_t>(numbers[0]);
+    if (numbers.size() < 2 || !(numbers[1] >= 0 && numbers[1] < static_cast<double>(numbers.size() - 1))) broken();
+    problem_ = problem_of(scene_, numbers[0]);  // later than the last record, and something may have let go since
+    const auto end = numbers.begin() + 2 + static_cast<std::ptrdiff_t>(numbers[1]);
     state_.path = solver::PathState();
-    state_.path = unpack_cursor(problem_, {numbers.begin() + 1, end});
+    state_.path = unpack_cursor(problem_, {numbers.begin() + 2, end});
     implicit::resize(implicit::point_count(problem_.ribbon, scene_.solver.implicit.kinetic), state_.points);
     state_.before = state_.path.chain;
     std::size_t size = 0;

@@ -119,12 +119,21 @@ void drag(const Ribbon& ribbon, const Options& options, double h, const geometry
   if (options.drag_tangent == 0 && options.drag_normal == 0) return;
   const double along = std::exp(-options.drag_tangent * h), across = std::exp(-options.drag_normal * h);
   const auto n = static_cast<std::size_t>(ribbon.segments);
-  for (std::size_t i = 0; i <= n; ++i) {
-    const Vec3 tangent = (k.frame[i > 0 ? i - 1 : 0].col(2) + k.frame[std::min(i, n - 1)].col(2)).normalized();
-    const Vec3 part = tangent.dot(points.v[i]) * tangent;
-    points.v[i] = along * part + across * (points.v[i] - part);
+  const auto damp = [&](Vec3& v, const Vec3& tangent) {
+    const Vec3 part = tangent.dot(v) * tangent;
+    v = along * part + across * (v - part);
+  };
+  for (std::size_t i = 0; i <= n; ++i) {  // the two nodes of a loop's seam are one
+    const std::size_t before = i > 0 ? i - 1 : ribbon.is_loop() ? n - 1 : 0;
+    const std::size_t after = i < n ? i : ribbon.is_loop() ? 0 : n - 1;
+    const Vec3 tangent = (k.frame[before].col(2) + k.frame[after].col(2)).normalized();
+    damp(points.v[i], tangent);
+    damp(points.v_before[i], tangent);  // BDF2 goes on from both
   }
-  for (std::size_t i = n + 1; i < points.v.size(); ++i) points.v[i] *= across;
+  for (std::size_t i = n + 1; i < points.v.size(); ++i) {
+    points.v[i] *= across;
+    points.v_before[i] *= across;
+  }
 }
 
 std::string why(const NewtonReport& report, double t, double h) {
@@ -147,7 +156,8 @@ std::string why(const NewtonReport& report, double t, double h) {
 /// Corrects the velocities of the step under way so that the energy has not grown.
 void keep_conserved(const Ribbon& ribbon, const Options& options, double growth, State& state, Workspace& work) {
   const ChainProblem& problem = work.problem;
-  const bool held = !problem.holds.empty() || problem.base_fixed[0] || problem.base_fixed[3];
+  const auto& fixed = problem.base_fixed;
+  const bool held = !problem.holds.empty() || std::any_of(fixed.begin(), fixed.end(), [](bool is) { return is; });
   const bool pushed =
       !problem.loads.empty() || options.drag_tangent > 0 || options.drag_normal > 0 ||
       std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return !f.isZero(0); });
@@ -155,6 +165,7 @@ void keep_conserved(const Ribbon& ribbon, const Options& options, double growth,
   wanted.kinetic = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta) - growth + state.missing;
   if (!held && !pushed) wanted.momentum = &state.momentum;
   state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.points);
+  if (wanted.momentum == nullptr) state.momentum = momentum(ribbon, options.kinetic, work.points, work.trial.eta);
 }
 
 int damp_more(const Options& options, int level) {
@@ -219,13 +230,9 @@ State start(const PathProblem& path, const Options& options, const geometry::Sta
   const auto n = static_cast<std::size_t>(path.ribbon.segments);
   for (std::size_t i = 0; i <= n; ++i) state.points.v[i] = shape.r_dot[i];
   for (std::size_t i = n + 1; i < state.points.v.size(); ++i) state.points.v[i] = spin.cross(state.points.x[i]);
-  ChainProblem& problem = work.problem;
-  problem_at(path, state.path, shape.time, state.path.chain, problem);
-  problem.barrier = options.barrier;
-  const ObjectiveValue value = objective(path.ribbon, problem, state.path.chain, work.kinematics, work.kinematics);
-  state.elastic = value.elastic + value.barrier;
+  work.problem = ChainProblem();
+  problem_at(path, state.path, shape.time, state.path.chain, work.problem);  // its base where the support has it
   state.peak = kinetic_energy(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
-  state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   find_accelerations(path, options, state, work);
   return state;
 }
@@ -237,6 +244,12 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   work.trial = state.path.chain;
   set_problem(path, options, scheme, state.path.t + h, state, work.trial, work.problem);
   work.problem.viscosity = 0;
+  // The hinge of a clamp that has let go took its energy along.
+  geometry::forward_kinematics(path.ribbon, state.path.chain, work.kinematics);
+  const ObjectiveValue now = objective(path.ribbon, work.problem, state.path.chain, work.kinematics, work.kinematics);
+  state.elastic = now.elastic + now.barrier;
+  state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
+  state.base_reaction.setZero();
   work.multipliers.assign(row_count(work.problem), 0.0);
   NewtonOptions newton = newton_options(options);
   newton.tolerance = 1e-10;
@@ -314,7 +327,11 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     state.elastic = elastic1;
     break;
   }
-  if (options.conserve) keep_conserved(ribbon, options, growth, state, work);
+  // The work of loads without a potential is not known, and what an impulse takes is gone.
+  if (options.conserve && state.level == kInelastic) state.missing = 0;
+  if (options.conserve && state.level != kInelastic && work.problem.loads.empty()) {
+    keep_conserved(ribbon, options, growth, state, work);
+  }
   state.calm = report.repeats > 0 ? 0 : state.calm + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
   state.before = state.path.chain;
