@@ -77,7 +77,8 @@ struct alignas(32) Four {
   Four() = default;
   constexpr Four(Two a, Two b) : low(a), high(b) {}
   constexpr Four(double x, double y, double z, double w) : low{x, y}, high{z, w} {}
-  constexpr Four(double x) : low{x, x}, high{x, x} {}  // implicit, as the compiler's vectors take numbers
+  // Implicit, as the compiler's vectors take numbers.
+  constexpr Four(double x) : low{x, x}, high{x, x} {}  // NOLINT(google-explicit-constructor)
   double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
   Four& operator+=(Four o) { return low += o.low, high += o.high, *this; }
   Four& operator-=(Four o) { return low -= o.low, high -= o.high, *this; }
