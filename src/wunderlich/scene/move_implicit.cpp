@@ -24,7 +24,7 @@ solver::PathProblem problem_of(const Scene& scene, double time) {
 }
 
 template <class Visit>
-void visit_all(double& repeats, implicit::State& state, const Visit& visit) {
+void visit_all(double& impulses, implicit::State& state, const Visit& visit) {
   const auto whole = [&](int& number) {
     double real = number;
     visit(real);
@@ -33,7 +33,7 @@ void visit_all(double& repeats, implicit::State& state, const Visit& visit) {
   const auto vectors = [&](auto& list) {
     for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
   };
-  visit(repeats);
+  visit(impulses);
   auto& p = state.points;
   for (auto* list : {&p.x, &p.v, &p.a, &p.acceleration, &p.x_before, &p.v_before}) vectors(*list);
   auto& base = state.before.base;
@@ -60,7 +60,7 @@ class ImplicitMover : public Mover {
     const Stopwatch watch;
     const implicit::StepReport report = implicit::step(problem_, scene_.solver.implicit, t1, state_, work_);
     recording.add_phase_time("minimise", watch.seconds());
-    repeats_ += report.repeats;
+    impulses_ += report.inelastic ? 1 : 0;
     if (report.accepted) shape_ = implicit::shape_of(problem_, state_);
     return {report.accepted, report.iterations, report.failure};
   }
@@ -79,14 +79,18 @@ class ImplicitMover : public Mover {
     return implicit::kinetic_energy(problem_.ribbon, scene_.solver.implicit.kinetic, state_.points,
                                     state_.path.chain.eta);
   }
-  void add_warnings(Summary&) const override {}
+  void add_warnings(Summary& summary) const override {
+    if (impulses_ == 0) return;
+    summary.warnings.push_back("impulses were taken up without a rebound, in " + text_of(impulses_) +
+                               " steps: a support starts at once, or the strip comes taut or folds within a step");
+  }
 
   std::vector<double> pack() const override {
     std::vector<double> out = pack_cursor(state_.path);
     out.insert(out.begin(), {state_.path.t, static_cast<double>(out.size())});
     implicit::State state = state_;
-    double repeats = repeats_;
-    visit_all(repeats, state, [&](double number) { out.push_back(number); });
+    double impulses = impulses_;
+    visit_all(impulses, state, [&](double number) { out.push_back(number); });
     return out;
   }
 
@@ -100,10 +104,10 @@ class ImplicitMover : public Mover {
     implicit::resize(implicit::point_count(problem_.ribbon, scene_.solver.implicit.kinetic), state_.points);
     state_.before = state_.path.chain;
     std::size_t size = 0;
-    visit_all(repeats_, state_, [&](double) { ++size; });
+    visit_all(impulses_, state_, [&](double) { ++size; });
     if (static_cast<std::ptrdiff_t>(size) != numbers.end() - end) broken();
     auto next = end;
-    visit_all(repeats_, state_, [&](double& number) { number = *next++; });
+    visit_all(impulses_, state_, [&](double& number) { number = *next++; });
     shape_ = implicit::shape_of(problem_, state_);
   }
 
@@ -113,7 +117,7 @@ class ImplicitMover : public Mover {
   implicit::State state_;
   implicit::Workspace work_;
   geometry::State shape_;
-  double repeats_ = 0;
+  double impulses_ = 0;  ///< steps that Euler's scheme took
 };
 
 }  // namespace

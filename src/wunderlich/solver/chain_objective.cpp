@@ -6,6 +6,7 @@
 
 #include "wunderlich/energy/joint_energy.hpp"
 #include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/by_node.hpp"
 #include "wunderlich/solver/chain_rows.hpp"
 #include "wunderlich/solver/chain_ties.hpp"
 
@@ -162,13 +163,6 @@ math::Mat6 follower_stiffness(const PointLoad& load, const Quat& frame) {
   return k;
 }
 
-/// Keeps the terms sorted by decreasing node.
-void insert(const math::PoseTerm& term, std::vector<math::PoseTerm>& terms) {
-  const auto after =
-      std::upper_bound(terms.begin(), terms.end(), term, [](const auto& a, const auto& b) { return a.node > b.node; });
-  terms.insert(after, term);
-}
-
 /// Point loads as gradients, with probe rows for the part of their derivative that no potential has.
 void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics& k, ChainSystem& system) {
   const auto count = static_cast<Eigen::Index>(problem.loads.size());
@@ -179,7 +173,7 @@ void add_loads(const ChainProblem& problem, const Chain& chain, const Kinematics
     math::PoseTerm term;
     term.node = load.node;
     term.gradient << -in_space(load, load.force, frame), -in_space(load, load.torque, frame);
-    insert(term, system.pose_terms);
+    insert_by_node(term, system.pose_terms);
     system.follower.block<6, 6>(6 * i, 6 * i) = follower_stiffness(load, frame);
     for (int c = 0; c < 6; ++c) {
       ChainRow row;

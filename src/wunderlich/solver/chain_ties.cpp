@@ -14,13 +14,6 @@ using math::Four;
 
 namespace {
 
-/// Middle, d3 and d2 of segment i as columns.
-Mat3 facet_of(const Ribbon& ribbon, const Kinematics& k, std::size_t i) {
-  Mat3 facet;
-  facet << k.r[i] + 0.5 * ribbon.rest_length[i] * k.frame[i].col(2), k.frame[i].col(2), k.frame[i].col(1);
-  return facet;
-}
-
 /// Each column of a facet moves by theta x arm, the middle by v as well; the arms turn with the facet.
 math::PoseTerm facet_term(const Ribbon& ribbon, const FacetTie& tie, const Kinematics& k, std::size_t i) {
   const Mat3 facet = facet_of(ribbon, k, i), force = (facet - tie.anchor) * tie.weight;
@@ -29,12 +22,12 @@ math::PoseTerm facet_term(const Ribbon& ribbon, const FacetTie& tie, const Kinem
   math::PoseTerm term;
   term.node = static_cast<int>(i);
   Vec3 torque = Vec3::Zero();
-  Mat3 products = Mat3::Zero(), forces = Mat3::Zero();
+  Mat3 forces = Mat3::Zero();
   for (int a = 0; a < 3; ++a) {
     torque += arm.col(a).cross(force.col(a));
     forces += arm.col(a) * force.col(a).transpose();
   }
-  products = arm * tie.weight * arm.transpose();
+  const Mat3 products = arm * tie.weight * arm.transpose();
   term.gradient << force.col(0), torque;
   term.hessian.topLeftCorner<3, 3>() = tie.weight(0, 0) * Mat3::Identity();
   term.hessian.topRightCorner<3, 3>() = -math::skew(arm * tie.weight.col(0));
@@ -96,6 +89,12 @@ void add_viscosity(const Ribbon& ribbon, const ChainProblem& problem, const Chai
 }
 
 }  // namespace
+
+Mat3 facet_of(const Ribbon& ribbon, const Kinematics& k, std::size_t i) {
+  Mat3 facet;
+  facet << k.r[i] + 0.5 * ribbon.rest_length[i] * k.frame[i].col(2), k.frame[i].col(2), k.frame[i].col(1);
+  return facet;
+}
 
 double tie_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k) {
   double value = 0;

@@ -5,6 +5,9 @@
 
 namespace wunderlich::solver {
 
+/// Middle, d3 and d2 of segment i as columns: what a FacetTie ties.
+Mat3 facet_of(const geometry::Ribbon& ribbon, const geometry::Kinematics& kinematics, std::size_t i);
+
 /// Their value [J].
 double tie_value(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
                  const geometry::Kinematics& kinematics);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/by_node.hpp"
 
 namespace wunderlich::solver {
 
@@ -48,24 +49,16 @@ Hold hold_at(const PathProblem& path, const PathState& state, std::size_t index,
   return hold;
 }
 
-/// Keeps holds and loads sorted by decreasing node.
-template <class Item>
-void insert(const Item& item, std::vector<Item>& items) {
-  const auto after =
-      std::upper_bound(items.begin(), items.end(), item, [](const Item& a, const Item& b) { return a.node > b.node; });
-  items.insert(after, item);
-}
-
 /// A support's rows: position at its node, frame at its link; apart where these differ (the end of the last segment).
 void add_holds(const Support& support, Hold hold, ChainProblem& problem) {
   if (support.node != hold.node) {
     Hold position = hold;
     position.node = support.node;
     position.orientation = Orientation::free;
-    insert(position, problem.holds);
+    insert_by_node(position, problem.holds);
     hold.position.fill(false);
   }
-  insert(hold, problem.holds);
+  insert_by_node(hold, problem.holds);
 }
 
 void fix_base(const Support& support, const Pose& pose, ChainProblem& problem, Chain& chain) {
@@ -93,7 +86,7 @@ void add_loads(const PathProblem& path, const PathState& state, double t, ChainP
       problem.force[static_cast<std::size_t>(load.node)] += key.force;
     } else {
       const bool on_base = load.node == 0 && path.ribbon.clamped[0];
-      insert(PointLoad{on_base ? -1 : load.node, load.frame, key.force, key.torque}, problem.loads);
+      insert_by_node(PointLoad{on_base ? -1 : load.node, load.frame, key.force, key.torque}, problem.loads);
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/chain_ties.hpp"
 #include "wunderlich/solver/implicit/conserve.hpp"
 #include "wunderlich/solver/load_step.hpp"
 #include "wunderlich/solver/path_step.hpp"
@@ -200,9 +201,7 @@ void float_freely(const Ribbon& ribbon, const ChainProblem& problem, Chain& chai
   }
   for (std::size_t s = 0; s < problem.facets.size(); ++s) {
     const FacetTie& facet = problem.facets[s];
-    Mat3 now;
-    now << k.r[s] + 0.5 * ribbon.rest_length[s] * k.frame[s].col(2), k.frame[s].col(2), k.frame[s].col(1);
-    force -= (now - facet.anchor) * facet.weight.col(0);
+    force -= (facet_of(ribbon, k, s) - facet.anchor) * facet.weight.col(0);
     stiffness += facet.weight(0, 0);
   }
   for (int c = 0; c < 3; ++c) {
