@@ -82,7 +82,7 @@ const std::vector<Key> table = {
      {},
      "Implicit: correct the velocities after each step so that energy, and momenta of a strip on which nothing acts, "
      "are "
-     "kept exactly."},
+     "kept, impulses apart."},
     {"solver.error",
      Type::number,
      "",
