@@ -187,7 +187,21 @@ TEST(SweepGradient, IsTheSlopeOfAClosedLoop) {
   }
 }
 
-/// Along the Newton step the gradient goes to zero, to first order: so the sweep's Hessian is its derivative.
+/// What the step's chart makes of it: the gradient there, and how much of each row of the Hessian times the step is
+/// the chart's.
+VectorXd of_chart(const math::ChainSystem& system, const VectorXd& gradient, const math::ChainStep& step) {
+  VectorXd out = VectorXd::Zero(gradient.size());
+  for (std::size_t i = 0; i < step.u.size(); ++i) {
+    const Index at = 2 * static_cast<Index>(i);
+    const double bend = system.links[i].chart * gradient[at + 1];
+    out[at] = bend * step.u[i][1];
+    out[at + 1] = bend * step.u[i][0];
+  }
+  return out;
+}
+
+/// Along the Newton step the gradient goes to zero, to first order, but for what its chart bends: so the sweep's Hessian
+/// is its derivative.
 TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
   Random random{std::mt19937(3), {}};
   for (const auto strain : {energy::StrainMeasure::logarithm, energy::StrainMeasure::printed}) {
@@ -214,8 +228,40 @@ TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
     VectorXd d = VectorXd::Zero(6 + 2 * ribbon.node_count());
     for (std::size_t i = 0; i < step.u.size(); ++i) d.segment<2>(6 + 2 * static_cast<Index>(i)) = step.u[i];
     const double size = d.norm();
-    expect_derivative([&](double h) { return gradient(moved(chain, h / size * d)); }, -start / size);
+    const VectorXd slope = of_chart(system, start, step) - start;
+    expect_derivative([&](double h) { return gradient(moved(chain, h / size * d)); }, slope / size);
   }
+}
+
+/// Newton's method works in curvature and torsion where there is curvature: along straight lines in these the bending
+/// energy bends upwards whatever the ruling, along straight lines in curvature and ruling it does not.
+TEST(TorsionChart, MakesTheBendingEnergyConvex) {
+  const Ribbon ribbon = strip(false, 0, {false, false}, true);
+  ChainProblem problem;
+  problem.barrier = 0;
+  problem.force.assign(static_cast<std::size_t>(ribbon.segments) + 1, Vec3::Zero());
+  Random random{std::mt19937(5), {}};
+  int concave = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    const double eta = 3 * random();  // everywhere: no ruling turns against the next
+    Chain chain = geometry::straight_chain(ribbon, {Vec3::Zero(), straight_frame()});
+    chain.kappa.assign(chain.kappa.size(), 4);
+    chain.eta.assign(chain.eta.size(), eta);
+    for (int i : {0, ribbon.segments})
+      if (!kappa_is_free(ribbon, i)) chain.kappa[static_cast<std::size_t>(i)] = 0;
+    Kinematics k;
+    geometry::forward_kinematics(ribbon, chain, k);
+    math::ChainSystem system;
+    linearise(ribbon, problem, chain, k, {}, system);
+    const math::ChainLink &before = system.links[2], &link = system.links[3];
+    Mat2 hessian = before.hess_bb + link.hess_aa;
+    concave += hessian.determinant() < 0 ? 1 : 0;
+    // The energy along kappa + a, tau + b, with tau = kappa eta, has this second derivative in (a, eta - eta0).
+    hessian(0, 1) -= link.chart * (before.grad_b + link.grad_a)[1];
+    hessian(1, 0) = hessian(0, 1);
+    EXPECT_GT(hessian.determinant(), 0) << "eta " << eta;
+  }
+  EXPECT_GT(concave, 25);
 }
 
 /// A strip clamped at its base, with its end held at `target`.

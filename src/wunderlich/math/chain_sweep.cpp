@@ -220,6 +220,8 @@ class Sweep {
       value.gradient0 += before->grad_b[0];
       value.gradient1 += before->grad_b[1];
     }
+    // In another chart the gradient bends the Hessian otherwise; forces that are left out bend nothing.
+    value.z01 -= system_.links[i].chart * (value.gradient1 - (system_.geometric ? 0 : value.pull1));
     value.z00 += system_.shift[0];
     value.z11 += system_.shift[1];
     work_.gradient[i] = {value.gradient0, value.gradient1};

@@ -32,6 +32,7 @@ struct ChainLink {
   Vec3 force;             ///< gradient of the node term in r_i
   Vec2 grad_a, grad_b;    ///< gradient of link i's energy in u_i, u_{i+1}
   Mat2 hess_aa, hess_ab, hess_bb;
+  double chart = 0;  ///< c: the Hessian is taken where u_1 moves by du_1 - c du_0 du_1, not straight on
 };
 
 /// Row of a linearised constraint: a functional of the pose of one link (or the end frame), of its u, and of

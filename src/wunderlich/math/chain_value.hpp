@@ -42,6 +42,7 @@ struct Value {
   double z00 = 0, z01 = 0, z11 = 0;      ///< u, u
   Four force = all(0), torque = all(0);  ///< adjoint wrench: the exact gradient in the pose
   double gradient0 = 0, gradient1 = 0;   ///< exact gradient in u so far
+  double pull1 = 0;                      ///< the part of it in u_1 that the torque exerts
 };
 
 /// Where the sorted lists of pose terms, probe rows and constraint rows stand.
@@ -135,8 +136,9 @@ void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<Q>&
     add_combination(c == 0 ? axis0 : axis1, columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c),
                     columns.quads());
   }
+  value.pull1 = dot3(b1, torque);
   value.gradient0 += dot3(b0, torque);
-  value.gradient1 += dot3(b1, torque);
+  value.gradient1 += value.pull1;
   if (!geometric) return;
   value.z01 += dot3(torque, four(link.axes_01));
   value.z11 += dot3(torque, four(link.axes_11));

@@ -24,6 +24,8 @@ using math::Four;
 
 namespace {
 
+constexpr double kFlat = 0.3;  // curvature times length below which a joint counts as flat
+
 double rigidity(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width; }
 
 /// Four links from `first` on: both ends of each, and what depends on the link alone. What is said of links beyond the
@@ -95,6 +97,11 @@ void fill_node(const ChainProblem& problem, std::size_t i, ChainLink& link) {
   link.force = -problem.force[i];
 }
 
+/// The chart (kappa, kappa eta), curvature and torsion: in it the bending energy is convex for every eta, in (kappa, eta)
+/// only for |eta| < 0.45, and fold angles are nearly linear. Where the strip is flat eta itself is the better
+/// coordinate.
+double torsion_chart(double kappa, double flat) { return kappa / (kappa * kappa + flat * flat); }
+
 /// Energy derivatives of `count` links from `first` on.
 inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                        std::size_t first, std::size_t count, ChainLink* links) {
@@ -127,6 +134,7 @@ inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
 void fix_coordinate(std::vector<ChainLink>& links, std::size_t i, int c) {
   ChainLink& link = links[i];
+  link.chart = 0;
   link.axes.col(c).setZero();
   if (c == 1) {
     link.axes_01.setZero();
@@ -224,6 +232,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   }
   for (std::size_t i = 0; i <= n; ++i) {
     fill_node(problem, i, system.links[i]);
+    system.links[i].chart = torsion_chart(chain.kappa[i], kFlat / ribbon.length);
     if (i < n) system.links[i].span = ribbon.rest_length[i] * k.frame[i].col(2);
   }
   // A loop's first joint shares its energy and turns nothing.

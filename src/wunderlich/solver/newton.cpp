@@ -296,8 +296,10 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     measure_step(ribbon, work, report);
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
-    const bool small = limit == 1 && report.last_step < options.tolerance && report.max_residual < options.tolerance;
-    if (!conservative || (inertial && small)) {
+    // A shift makes steps short that are not the last ones.
+    const bool small = limit == 1 && report.last_step * (1 + shift) < options.tolerance &&
+                       report.max_residual < options.tolerance;
+    if (!conservative || (options.inertial && small)) {
       // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
       if (small && !options.inertial) return accept();
       if (!take_step(at, current, limit, report)) {
@@ -313,7 +315,8 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     at.weigh_rows();
     const double merit = at.merit_of(current, work.kinematics, work.residuals);
     const double slope = at.slope();
-    const Stationary kind = classify(ribbon, options, shift, slope, merit, work, report);
+    const Stationary kind =
+        options.inertial ? Stationary::no : classify(ribbon, options, shift, slope, merit, work, report);
     if (kind == Stationary::minimum) {
       report.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
       return accept();
