@@ -37,21 +37,37 @@ TEST(Energy, OfATiltedSwingIsLostAtTheFlatState) {
   EXPECT_LE(change, 5e-2);
 }
 
-/// The soft sheet whips in its plane: energy goes into waves that no step resolves, unless velocities are corrected.
-double whip(bool conserve) {
-  Motion m = swing(2.7e-4, 0);
+/// The soft sheet whips for 2 s at 1 ms: the energy at the end and its largest change, over the largest kinetic energy.
+struct Whip {
+  double end = 0, most = 0;
+};
+
+Whip whip(double tilt, bool conserve) {
+  Motion m = swing(2.7e-4, tilt);
   m.options.conserve = conserve;
   const double before = total_energy(m);
-  for (int i = 1; i <= (is_slow_build() ? 200 : 2000); ++i) EXPECT_TRUE(move_to(1e-3 * i, m)) << m.failure;
-  return std::abs(total_energy(m) - before) / m.state.peak;
+  Whip out;
+  for (int i = 1; i <= (is_slow_build() ? 200 : 2000); ++i) {
+    EXPECT_TRUE(move_to(1e-3 * i, m)) << m.failure;
+    out.end = std::abs(total_energy(m) - before);
+    out.most = std::max(out.most, out.end);
+  }
+  out.end /= m.state.peak;
+  out.most /= m.state.peak;
+  return out;
 }
 
-/// Asked: 1e-9. Not reached: what Euler's steps take where the strip snaps taut is not given back.
-TEST(Energy, OfAWhipInThePlaneIsLostLessWhereVelocitiesAreCorrected) {
-  const double corrected = whip(true), plain = whip(false);
-  show("energy of a whip, corrected", corrected, 1e-9);
-  show("the same, not corrected", plain, 1e-9);
-  EXPECT_LE(corrected, is_slow_build() ? plain + 1e-9 : 0.6 * plain);
+/// Energy goes into waves that no step resolves, unless velocities are corrected.
+TEST(Energy, OfAWhipIsKeptWhereVelocitiesAreCorrected) {
+  for (const double tilt : {0.0, 0.3}) {
+    const std::string where = tilt > 0 ? ", out of its plane" : ", in its plane";
+    const Whip corrected = whip(tilt, true), plain = whip(tilt, false);
+    show("energy of a whip" + where, corrected.end, 1e-9);
+    show("its largest change", corrected.most, 1e-9);
+    show("not corrected", plain.end, 1e-9);
+    EXPECT_LE(corrected.end, 1e-9);
+    EXPECT_TRUE(is_slow_build() || plain.end > 0.1);
+  }
 }
 
 /// A bent, twisted strip thrown with a spin, without gravity.

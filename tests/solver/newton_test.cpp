@@ -200,8 +200,8 @@ VectorXd of_chart(const math::ChainSystem& system, const VectorXd& gradient, con
   return out;
 }
 
-/// Along the Newton step the gradient goes to zero, to first order, but for what its chart bends: so the sweep's Hessian
-/// is its derivative.
+/// Along the Newton step the gradient goes to zero, to first order, but for what its chart bends: so the sweep's
+/// Hessian is its derivative.
 TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
   Random random{std::mt19937(3), {}};
   for (const auto strain : {energy::StrainMeasure::logarithm, energy::StrainMeasure::printed}) {
@@ -218,6 +218,7 @@ TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
       Kinematics k;
       geometry::forward_kinematics(ribbon, at, k);
       linearise(ribbon, problem, at, k, {}, system);
+      solver::use_torsion_chart(ribbon, at, system);
       EXPECT_TRUE(chain_step(system, work, step));
       VectorXd all(2 * ribbon.node_count());
       for (std::size_t i = 0; i < work.gradient.size(); ++i)
@@ -253,6 +254,7 @@ TEST(TorsionChart, MakesTheBendingEnergyConvex) {
     geometry::forward_kinematics(ribbon, chain, k);
     math::ChainSystem system;
     linearise(ribbon, problem, chain, k, {}, system);
+    solver::use_torsion_chart(ribbon, chain, system);
     const math::ChainLink &before = system.links[2], &link = system.links[3];
     Mat2 hessian = before.hess_bb + link.hess_aa;
     concave += hessian.determinant() < 0 ? 1 : 0;

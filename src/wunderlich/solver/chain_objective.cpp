@@ -24,8 +24,6 @@ using math::Four;
 
 namespace {
 
-constexpr double kFlat = 0.3;  // curvature times length below which a joint counts as flat
-
 double rigidity(const Ribbon& ribbon) { return ribbon.bending_stiffness * ribbon.width; }
 
 /// Four links from `first` on: both ends of each, and what depends on the link alone. What is said of links beyond the
@@ -93,14 +91,10 @@ void still_joint(ChainLink& link) {
 }
 
 void fill_node(const ChainProblem& problem, std::size_t i, ChainLink& link) {
+  link.chart = 0;
   link.stiffness = 0;
   link.force = -problem.force[i];
 }
-
-/// The chart (kappa, kappa eta), curvature and torsion: in it the bending energy is convex for every eta, in (kappa, eta)
-/// only for |eta| < 0.45, and fold angles are nearly linear. Where the strip is flat eta itself is the better
-/// coordinate.
-double torsion_chart(double kappa, double flat) { return kappa / (kappa * kappa + flat * flat); }
 
 /// Energy derivatives of `count` links from `first` on.
 inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
@@ -134,7 +128,6 @@ inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
 void fix_coordinate(std::vector<ChainLink>& links, std::size_t i, int c) {
   ChainLink& link = links[i];
-  link.chart = 0;
   link.axes.col(c).setZero();
   if (c == 1) {
     link.axes_01.setZero();
@@ -232,7 +225,6 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   }
   for (std::size_t i = 0; i <= n; ++i) {
     fill_node(problem, i, system.links[i]);
-    system.links[i].chart = torsion_chart(chain.kappa[i], kFlat / ribbon.length);
     if (i < n) system.links[i].span = ribbon.rest_length[i] * k.frame[i].col(2);
   }
   // A loop's first joint shares its energy and turns nothing.
@@ -246,6 +238,16 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   }
   add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);
+}
+
+void use_torsion_chart(const Ribbon& ribbon, const Chain& chain, ChainSystem& system) {
+  constexpr double kFlat = 0.3;  // curvature times length below which a joint counts as flat
+  const double flat = kFlat / ribbon.length;
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const double kappa = chain.kappa[i];
+    const bool turns = geometry::eta_is_free(ribbon, static_cast<int>(i));
+    system.links[i].chart = turns ? kappa / (kappa * kappa + flat * flat) : 0;
+  }
 }
 
 }  // namespace wunderlich::solver

@@ -82,4 +82,10 @@ void linearise(const geometry::Ribbon& ribbon, const ChainProblem& problem, cons
                const geometry::Kinematics& kinematics, const std::vector<double>& multipliers,
                math::ChainSystem& system);
 
+/// Takes the Hessian of `system` along straight lines in curvature and torsion, kappa and kappa eta, for the step. In
+/// these coordinates the bending energy is convex for every eta, in kappa and eta only for |eta| < 0.45, and fold
+/// angles are nearly linear: far from the minimum the step is a better one, at the minimum the same. Where the strip is
+/// flat eta itself is the coordinate.
+void use_torsion_chart(const geometry::Ribbon& ribbon, const geometry::Chain& chain, math::ChainSystem& system);
+
 }  // namespace wunderlich::solver

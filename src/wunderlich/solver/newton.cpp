@@ -287,6 +287,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.system);
+    if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && shift == 0 && find_inertial_direction(ribbon, work, report);
     if (!inertial && !find_direction(ribbon, conservative, work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
@@ -297,8 +298,8 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
     // A shift makes steps short that are not the last ones.
-    const bool small = limit == 1 && report.last_step * (1 + shift) < options.tolerance &&
-                       report.max_residual < options.tolerance;
+    const bool small =
+        limit == 1 && report.last_step * (1 + shift) < options.tolerance && report.max_residual < options.tolerance;
     if (!conservative || (options.inertial && small)) {
       // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
       if (small && !options.inertial) return accept();

@@ -10,7 +10,7 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kLargestChange = 0.05;  // of the velocities' scale in one step
+constexpr double kLargestChange = 0.25;  // of the velocities' scale in one step
 
 using Vec6 = math::Vec6;
 

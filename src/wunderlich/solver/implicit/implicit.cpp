@@ -326,11 +326,8 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     state.elastic = elastic1;
     break;
   }
-  // The work of loads without a potential is not known, and what an impulse takes is gone.
-  if (options.conserve && state.level == kInelastic) state.missing = 0;
-  if (options.conserve && state.level != kInelastic && work.problem.loads.empty()) {
-    keep_conserved(ribbon, options, growth, state, work);
-  }
+  // The work of loads without a potential is not known.
+  if (options.conserve && work.problem.loads.empty()) keep_conserved(ribbon, options, growth, state, work);
   state.calm = report.repeats > 0 ? 0 : state.calm + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
   state.before = state.path.chain;
