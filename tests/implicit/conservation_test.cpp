@@ -70,6 +70,31 @@ TEST(Energy, OfAWhipIsKeptWhereVelocitiesAreCorrected) {
   }
 }
 
+/// Energy that a clamp puts in which starts at once, moves and turns, in steps of `dt`.
+double driven(double dt, bool conserve) {
+  Motion m = between_clamps();
+  m.options.conserve = conserve;
+  const double before = total_energy(m);
+  for (int i = 1; i * dt < (is_slow_build() ? 0.03 : 0.4); ++i) {
+    EXPECT_TRUE(move_to(i * dt, m)) << m.failure;
+    if (::testing::Test::HasFailure()) break;
+  }
+  return total_energy(m) - before;
+}
+
+/// The work of supports is taken into account: with corrected velocities the motion has the same energy.
+TEST(Energy, OfAStripThatAClampDrives) {
+  const double fine = driven(2.5e-4, false);
+  for (const double dt : {4e-3, 2e-3, 1e-3}) {
+    SCOPED_TRACE(dt);
+    const double corrected = driven(dt, true), plain = driven(dt, false);
+    show("energy put in, corrected, over the true one", corrected / fine, 1);
+    show("not corrected", plain / fine, 1);
+    EXPECT_NEAR(corrected / fine, 1, 0.1);
+    EXPECT_NEAR(plain / fine, 1, 0.15);
+  }
+}
+
 /// A bent, twisted strip thrown with a spin, without gravity.
 void fly(implicit::KineticEnergy kinetic, bool conserve) {
   Motion m = make_motion(sheet(2.7e-4, false), {});

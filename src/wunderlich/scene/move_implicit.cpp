@@ -42,7 +42,8 @@ void visit_all(double& impulses, implicit::State& state, const Visit& visit) {
   for (auto& kappa : state.before.kappa) visit(kappa);
   for (auto& eta : state.before.eta) visit(eta);
   whole(state.level), whole(state.calm);
-  for (double* number : {&state.last_step, &state.elastic, &state.peak, &state.missing}) visit(*number);
+  for (double* number : {&state.last_step, &state.usual_step, &state.elastic, &state.peak, &state.missing})
+    visit(*number);
   for (int c = 0; c < 3; ++c) visit(state.momentum.linear[c]), visit(state.momentum.angular[c]);
   for (auto& c : state.base_reaction) visit(c);
 }

@@ -22,7 +22,8 @@ constexpr double kGrowth = 1e-3;       // of the energy in one step, over the la
 constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
 constexpr int kCalmSteps = 50;         // before less damping is tried again
 constexpr int kInelastic = static_cast<int>(kRho.size());  // level of damping beyond those: Euler's
-constexpr double kShortened = 0.3;                         // of the last step: what is shorter may be inelastic
+constexpr double kShortened = 0.3;                         // of the usual step: what is shorter may be inelastic
+constexpr double kForgotten = 0.1;                         // share of the usual step that a shorter one takes off
 constexpr double kProbe = 0.02;                            // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
 constexpr double kFlat = 1e-4;       // curvature over 1/length that counts as none
@@ -177,7 +178,7 @@ int damp_more(const Options& options, int level) {
 /// without a rebound, which the others exaggerate at any step length. First, shorter steps must have been no help.
 bool can_damp(const Options& options, const State& state, double h) {
   if (options.integrator == Integrator::euler || state.level == kInelastic) return false;
-  return damp_more(options, state.level) < kInelastic || h <= kShortened * state.last_step || state.last_step == 0;
+  return damp_more(options, state.level) < kInelastic || h <= kShortened * state.usual_step;
 }
 
 /// Length of a step that finds accelerations: short against the strip's own time, long against rounding.
@@ -282,6 +283,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   const double h = t1 - state.path.t;
   StepReport report;
   const int level = state.level;
+  state.usual_step = std::max(state.usual_step, h);
   const double kinetic0 = kinetic_energy(ribbon, options.kinetic, state.points, state.path.chain.eta);
   double growth = 0;  // of the energy, beyond the work of loads and supports
   for (;; state.level = damp_more(options, state.level), ++report.repeats) {
@@ -332,6 +334,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
   state.before = state.path.chain;
   state.last_step = h;
+  state.usual_step += kForgotten * (h - state.usual_step);
   std::swap(state.path.chain, work.trial);
   std::swap(state.path.multipliers, work.multipliers);
   std::swap(state.points, work.points);

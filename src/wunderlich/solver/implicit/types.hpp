@@ -28,6 +28,7 @@ struct State {
   Points points;
   geometry::Chain before;                         ///< joint coordinates a step earlier, for the prediction
   double last_step = 0;                           ///< [s]; 0 before the first, and where something has let go
+  double usual_step = 0;                          ///< [s] that is tried where nothing makes it shorter
   int level = 0;                                  ///< of the damping of what a step does not resolve: 0 ... 3
   int calm = 0;                                   ///< steps since it was raised
   double elastic = 0;                             ///< energy with the barrier, now [J]
