@@ -46,12 +46,9 @@ ChainSystem random_system(int links, const std::array<bool, 6>& base_fixed, doub
   system.shift = {0.1 * std::abs(random()), 0.1 * std::abs(random())};
   for (int i = 0; i <= links; ++i) {
     math::ChainLink link;
-    link.axes << random.vector(), random.vector();
-    link.axes_01 = random.vector();
-    link.axes_11 = random.vector();
-    link.span = random.vector();
+    for (math::Four* vector : {&link.axis[0], &link.axis[1], &link.axis_01, &link.axis_11, &link.span, &link.force})
+      *vector = math::four(random.vector());
     link.stiffness = std::abs(random());
-    link.force = random.vector();
     link.grad_a = random.pair();
     link.grad_b = random.pair();
     const Mat4 h = random.symmetric(4, softness);
@@ -178,8 +175,8 @@ TEST(ChainSweep, NodeDisplacementsFollowTheStep) {
   math::Vec6 pose = step.base;
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     EXPECT_LE((step.v[i] - pose.head<3>()).norm(), 1e-13 * (1 + pose.norm()));
-    pose.tail<3>() += system.links[i].axes * step.u[i];
-    pose.head<3>() += pose.tail<3>().cross(system.links[i].span);
+    pose.tail<3>() += math::first_three(math::turn_of(system.links[i], step.u[i]));
+    pose.head<3>() += pose.tail<3>().cross(math::first_three(system.links[i].span));
   }
 }
 
@@ -193,7 +190,7 @@ TEST(ChainSweep, ReportsWhatIsSingular) {
   ChainSystem flat = system;
   flat.shift = {0, 0};
   for (auto& link : flat.links) {
-    link.axes.col(1).setZero();
+    link.axis[1] = math::all(0);
     for (Mat2* block : {&link.hess_aa, &link.hess_ab, &link.hess_bb}) {
       block->row(1).setZero();
       block->col(1).setZero();
@@ -201,7 +198,7 @@ TEST(ChainSweep, ReportsWhatIsSingular) {
   }
   flat.rows.clear();
   EXPECT_FALSE(chain_step(flat, work, step));  // nothing depends on the second coordinate
-  system.links[2].force[1] = std::nan("");
+  system.links[2].force = math::four(Vec3(0, std::nan(""), 0));
   EXPECT_FALSE(chain_step(system, work, step));
 }
 

@@ -19,9 +19,10 @@ std::vector<MatrixXd> pose_maps(const ChainSystem& system, Index size) {
   MatrixXd pose = MatrixXd::Zero(6, size);
   pose.leftCols<6>().setIdentity();
   for (std::size_t i = 0; i < system.links.size(); ++i) {
-    pose.block<3, 2>(3, 6 + 2 * static_cast<Index>(i)) += system.links[i].axes;
+    for (Index c = 0; c < 2; ++c)
+      pose.block<3, 1>(3, 6 + 2 * static_cast<Index>(i) + c) += math::first_three(system.links[i].axis[c]);
     out.push_back(pose);
-    if (i + 1 < system.links.size()) pose.topRows<3>() -= math::skew(system.links[i].span) * pose.bottomRows<3>();
+    if (i + 1 < system.links.size()) pose.topRows<3>() -= math::skew(math::first_three(system.links[i].span)) * pose.bottomRows<3>();
   }
   return out;
 }
@@ -78,7 +79,7 @@ DenseChain dense_chain(const ChainSystem& system) {
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     const MatrixXd v = poses[i].topRows<3>();
     out.hessian += system.links[i].stiffness * v.transpose() * v;
-    out.gradient += v.transpose() * system.links[i].force;
+    out.gradient += v.transpose() * math::first_three(system.links[i].force);
   }
   for (const math::PoseTerm& term : system.pose_terms) {
     const MatrixXd& pose = poses[static_cast<std::size_t>(term.node)];

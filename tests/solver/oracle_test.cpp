@@ -88,7 +88,7 @@ struct Linearised {
     for (std::size_t i = 0; i < step.u.size(); ++i) {
       chain.kappa[i] += step.u[i][0];
       chain.eta[i] += step.u[i][1];
-      turn = std::max(turn, (system.links[i].axes * step.u[i]).norm());
+      turn = std::max(turn, math::first_three(math::turn_of(system.links[i], step.u[i])).norm());
     }
     multipliers = step.multiplier;
     linearise_here();

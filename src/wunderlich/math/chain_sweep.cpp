@@ -174,8 +174,8 @@ class Sweep {
       const Four minus_u = halves + swap_halves(halves);  // (u0, u1, u0, u1), negative
       step.v[i] = first_three(v);
       step.u[i] = {-minus_u[0], -minus_u[1]};
-      theta -= double_even(minus_u) * four(link.axes.col(0)) + double_odd(minus_u) * four(link.axes.col(1));
-      if (i + 1 < count) v += cross(theta, four(link.span));
+      theta -= double_even(minus_u) * link.axis[0] + double_odd(minus_u) * link.axis[1];
+      if (i + 1 < count) v += cross(theta, link.span);
       previous = double_ends(minus_u);
     }
   }

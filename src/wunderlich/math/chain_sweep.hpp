@@ -19,17 +19,17 @@
 
 namespace wunderlich::math {
 
-using Mat32 = Eigen::Matrix<double, 3, 2>;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// First and second derivatives of the objective around one node: the joint at node i, the node, link i.
+/// Vectors of space have a fourth lane that is 0.
 struct ChainLink {
-  Mat32 axes;             ///< d theta / d u of the joint, world; a zero column for a fixed coordinate
-  Vec3 axes_01, axes_11;  ///< second derivatives of the joint's rotation, world (the 00 one vanishes)
-  Vec3 span;              ///< node i to node i + 1, world; unused at the last node
+  Four axis[2];           ///< d theta / d u of the joint, world; zero for a fixed coordinate
+  Four axis_01, axis_11;  ///< second derivatives of the joint's rotation, world (the 00 one vanishes)
+  Four span;              ///< node i to node i + 1, world; unused at the last node
+  Four force;             ///< gradient of the node term in r_i
   double stiffness;       ///< Hessian of the node term in r_i is stiffness * identity
-  Vec3 force;             ///< gradient of the node term in r_i
   Vec2 grad_a, grad_b;    ///< gradient of link i's energy in u_i, u_{i+1}
   Mat2 hess_aa, hess_ab, hess_bb;
   double chart = 0;  ///< c: the Hessian is taken where u_1 moves by du_1 - c du_0 du_1, not straight on
@@ -62,6 +62,9 @@ struct TurnTerm {
   Four hessian[3];    ///< the fourth lanes are the gradient
   Four geometric[3];  ///< further Hessian of terms that carry forces; the fourth lanes are 0
 };
+
+/// The turn of the joint by du, about the axis it has.
+inline Four turn_of(const ChainLink& link, const Vec2& du) { return all(du[0]) * link.axis[0] + all(du[1]) * link.axis[1]; }
 
 /// One linearised problem.
 struct ChainSystem {

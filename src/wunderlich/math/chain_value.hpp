@@ -109,11 +109,11 @@ inline void add_node(const ChainLink& link, double share, Value& value) {
   value.vv[1] += Four{0, k, 0, 0};
   value.vv[2] += Four{0, 0, k, 0};
   for (int i = 0; i < 3; ++i) value.vt[i] += last_lane(share * link.force[i]);
-  value.force += four(link.force);
+  value.force += link.force;
 }
 
 /// out += a[0] rows[0] + a[1] rows[1] + a[2] rows[2], over `count` vectors.
-inline void add_combination(const Vec3& a, const Four* x, const Four* y, const Four* z, Four* out, int count) {
+inline void add_combination(const Four& a, const Four* x, const Four* y, const Four* z, Four* out, int count) {
   const Four a0 = all(a[0]), a1 = all(a[1]), a2 = all(a[2]);
   for (int k = 0; k < count; ++k) out[k] += a0 * x[k] + a1 * y[k] + a2 * z[k];
 }
@@ -121,11 +121,10 @@ inline void add_combination(const Vec3& a, const Four* x, const Four* y, const F
 /// theta_i = theta_{i-1} + axes u, and the joint's second-order terms.
 template <int Q>
 void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<Q>& columns) {
-  const Vec3 axis0 = link.axes.col(0), axis1 = link.axes.col(1);
-  const Four b0 = four(axis0), b1 = four(axis1), torque = value.torque;
+  const Four b0 = link.axis[0], b1 = link.axis[1], torque = value.torque;
   const Four old0 = value.ut[0], old1 = value.ut[1];
-  add_combination(axis0, &value.tt[0], &value.tt[1], &value.tt[2], &value.ut[0], 1);
-  add_combination(axis1, &value.tt[0], &value.tt[1], &value.tt[2], &value.ut[1], 1);
+  add_combination(link.axis[0], &value.tt[0], &value.tt[1], &value.tt[2], &value.ut[0], 1);
+  add_combination(link.axis[1], &value.tt[0], &value.tt[1], &value.tt[2], &value.ut[1], 1);
   value.uv[0] += lane_sums(value.vt[0] * b0, value.vt[1] * b0, value.vt[2] * b0);
   value.uv[1] += lane_sums(value.vt[0] * b1, value.vt[1] * b1, value.vt[2] * b1);
   const Four z = lane_sums((old0 + value.ut[0]) * b0, old0 * b1 + value.ut[1] * b0, (old1 + value.ut[1]) * b1);
@@ -133,21 +132,21 @@ void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<Q>&
   value.z01 += z[1];
   value.z11 += z[2];
   for (int c = 0; c < 2; ++c) {
-    add_combination(c == 0 ? axis0 : axis1, columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c),
+    add_combination(link.axis[c], columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c),
                     columns.quads());
   }
   value.pull1 = dot3(b1, torque);
   value.gradient0 += dot3(b0, torque);
   value.gradient1 += value.pull1;
   if (!geometric) return;
-  value.z01 += dot3(torque, four(link.axes_01));
-  value.z11 += dot3(torque, four(link.axes_11));
+  value.z01 += dot3(torque, link.axis_01);
+  value.z11 += dot3(torque, link.axis_11);
   value.ut[0] += all(0.5) * cross(b0, torque);
   value.ut[1] += all(0.5) * cross(b1, torque);
 }
 
 /// c += d x a, for rows a, c of three of `count` vectors each.
-inline void add_cross_rows(const Vec3& d, const Four* a0, const Four* a1, const Four* a2, Four* c0, Four* c1, Four* c2,
+inline void add_cross_rows(const Four& d, const Four* a0, const Four* a1, const Four* a2, Four* c0, Four* c1, Four* c2,
                            int count) {
   const Four x = all(d[0]), y = all(d[1]), z = all(d[2]);
   for (int k = 0; k < count; ++k) {
@@ -159,9 +158,9 @@ inline void add_cross_rows(const Vec3& d, const Four* a0, const Four* a1, const 
 
 /// v_i = v_{i-1} + theta x span, to second order.
 template <int Q>
-void pass_span(const Vec3& span, bool geometric, Value& value, Columns<Q>& columns) {
+void pass_span(const Four& span, bool geometric, Value& value, Columns<Q>& columns) {
   // Congruence with [I X; 0 I], X = -[d]x: first the left factor on the rows theta, then the right one on every row.
-  const Four d = four(span);
+  const Four d = span;
   add_cross_rows(span, &value.vt[0], &value.vt[1], &value.vt[2], &value.tt[0], &value.tt[1], &value.tt[2], 1);
   add_cross_rows(span, columns.row(0), columns.row(1), columns.row(2), columns.row(3), columns.row(4), columns.row(5),
                  columns.quads());

@@ -71,13 +71,13 @@ inline void fill_joints(const Ribbon& ribbon, const Chain& chain, const Kinemati
                                             math::load(chain.kappa, first), math::load(chain.eta, first));
   const auto fill = [&](const Mat3& before, int lane, ChainLink& link) {
     const Four d1 = math::four(before.col(0)), d2 = math::four(before.col(1)), d3 = math::four(before.col(2));
-    const auto in_space = [&](const geometry::InFrame<Four>& v) -> Vec3 {
-      return math::first_three(math::all(v.x[lane]) * d1 + math::all(v.y[lane]) * d2 + math::all(v.z[lane]) * d3);
+    const auto in_space = [&](const geometry::InFrame<Four>& v) {
+      return math::all(v.x[lane]) * d1 + math::all(v.y[lane]) * d2 + math::all(v.z[lane]) * d3;
     };
-    link.axes.col(0) = in_space(d.kappa);
-    link.axes.col(1) = in_space(d.eta);
-    link.axes_01 = in_space(d.kappa_eta);
-    link.axes_11 = in_space(d.eta_eta);
+    link.axis[0] = in_space(d.kappa);
+    link.axis[1] = in_space(d.eta);
+    link.axis_01 = in_space(d.kappa_eta);
+    link.axis_11 = in_space(d.eta_eta);
   };
   // Axes are given before the fold; carry them with the frame before it.
   if (first == 0) fill(chain.base.frame.toRotationMatrix(), 0, links[0]);
@@ -85,15 +85,13 @@ inline void fill_joints(const Ribbon& ribbon, const Chain& chain, const Kinemati
 }
 
 void still_joint(ChainLink& link) {
-  link.axes.setZero();
-  link.axes_01.setZero();
-  link.axes_11.setZero();
+  link.axis[0] = link.axis[1] = link.axis_01 = link.axis_11 = math::all(0);
 }
 
 void fill_node(const ChainProblem& problem, std::size_t i, ChainLink& link) {
   link.chart = 0;
   link.stiffness = 0;
-  link.force = -problem.force[i];
+  link.force = math::four(-problem.force[i]);
 }
 
 /// Energy derivatives of `count` links from `first` on.
@@ -128,11 +126,8 @@ inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const 
 /// Coordinates that do not exist get a unit pivot and no coupling, so that the sweep leaves them alone.
 void fix_coordinate(std::vector<ChainLink>& links, std::size_t i, int c) {
   ChainLink& link = links[i];
-  link.axes.col(c).setZero();
-  if (c == 1) {
-    link.axes_01.setZero();
-    link.axes_11.setZero();
-  }
+  link.axis[c] = math::all(0);
+  if (c == 1) link.axis_01 = link.axis_11 = math::all(0);
   if (i + 1 < links.size()) {
     link.grad_a[c] = 0;
     link.hess_aa.row(c).setZero();
@@ -225,7 +220,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   }
   for (std::size_t i = 0; i <= n; ++i) {
     fill_node(problem, i, system.links[i]);
-    if (i < n) system.links[i].span = ribbon.rest_length[i] * k.frame[i].col(2);
+    if (i < n) system.links[i].span = math::all(ribbon.rest_length[i]) * math::four(k.frame[i].col(2));
   }
   // A loop's first joint shares its energy and turns nothing.
   if (ribbon.hinge_length[0] == 0) still_joint(system.links[0]);

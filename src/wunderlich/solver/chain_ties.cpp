@@ -121,7 +121,7 @@ void add_ties(const Ribbon& ribbon, const ChainProblem& problem, const Chain& ch
               math::ChainSystem& system) {
   for (std::size_t i = 0; i < problem.tie.size(); ++i) {
     system.links[i].stiffness += problem.tie[i];
-    system.links[i].force += problem.tie[i] * (k.r[i] - problem.anchor[i]);
+    system.links[i].force += math::four(problem.tie[i] * (k.r[i] - problem.anchor[i]));
   }
   system.turns.resize(problem.turn_tie.size());
   for (std::size_t i = 0; i < problem.turn_tie.size(); ++i) {

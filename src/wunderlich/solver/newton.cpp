@@ -65,6 +65,12 @@ void Iterate::weigh_rows() {
   if (infeasibility > 0 && excess > 0) emphasis += excess / infeasibility;
 }
 
+/// By which the step turns the joint at a node.
+double turn_angle(const NewtonWorkspace& work, std::size_t node) {
+  const math::Four turn = math::turn_of(work.system.links[node], work.step.u[node]);
+  return std::sqrt(math::dot3(turn, turn));
+}
+
 /// Shortens the step to keep |x| < 1 and fold angles from jumping.
 double step_limit(const Ribbon& ribbon, const NewtonOptions& options, const Chain& chain, const NewtonWorkspace& work) {
   double limit = 1;
@@ -77,7 +83,7 @@ double step_limit(const Ribbon& ribbon, const NewtonOptions& options, const Chai
     if (limit * std::abs(dx) > room) limit = room / std::abs(dx);
   }
   double turn = step.base.tail<3>().norm();
-  for (std::size_t i = 0; i < step.u.size(); ++i) turn = std::max(turn, (work.system.links[i].axes * step.u[i]).norm());
+  for (std::size_t i = 0; i < step.u.size(); ++i) turn = std::max(turn, turn_angle(work, i));
   return turn * limit > options.max_turn ? options.max_turn / turn : limit;
 }
 
@@ -97,7 +103,7 @@ void measure_step(const Ribbon& ribbon, const NewtonWorkspace& work, NewtonRepor
   report.last_step = 0;
   for (std::size_t i = 0; i < work.step.u.size(); ++i) {
     const Vec2& u = work.step.u[i];
-    const double size = u.allFinite() ? std::max({(work.system.links[i].axes * u).norm(),
+    const double size = u.allFinite() ? std::max({turn_angle(work, i),
                                                   work.step.v[i].norm() / ribbon.length, 1e-3 * std::abs(u[1])})
                                       : std::numeric_limits<double>::infinity();
     if (size <= report.last_step) continue;
@@ -228,7 +234,7 @@ void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
   double turn = 1e-12;
   for (std::size_t i = 0; i < work.step.u.size(); ++i) {
     turn = std::max(
-        {turn, (work.system.links[i].axes * work.step.u[i]).norm(), 10 * work.step.v[i].norm() / ribbon.length});
+        {turn, turn_angle(work, i), 10 * work.step.v[i].norm() / ribbon.length});
   }
   NewtonOptions small;
   small.max_turn = kKick;
