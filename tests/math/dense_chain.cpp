@@ -22,7 +22,8 @@ std::vector<MatrixXd> pose_maps(const ChainSystem& system, Index size) {
     for (Index c = 0; c < 2; ++c)
       pose.block<3, 1>(3, 6 + 2 * static_cast<Index>(i) + c) += math::first_three(system.links[i].axis[c]);
     out.push_back(pose);
-    if (i + 1 < system.links.size()) pose.topRows<3>() -= math::skew(math::first_three(system.links[i].span)) * pose.bottomRows<3>();
+    if (i + 1 < system.links.size())
+      pose.topRows<3>() -= math::skew(math::first_three(system.links[i].span)) * pose.bottomRows<3>();
   }
   return out;
 }

@@ -64,7 +64,9 @@ struct TurnTerm {
 };
 
 /// The turn of the joint by du, about the axis it has.
-inline Four turn_of(const ChainLink& link, const Vec2& du) { return all(du[0]) * link.axis[0] + all(du[1]) * link.axis[1]; }
+inline Four turn_of(const ChainLink& link, const Vec2& du) {
+  return all(du[0]) * link.axis[0] + all(du[1]) * link.axis[1];
+}
 
 /// One linearised problem.
 struct ChainSystem {

@@ -132,8 +132,7 @@ void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<Q>&
   value.z01 += z[1];
   value.z11 += z[2];
   for (int c = 0; c < 2; ++c) {
-    add_combination(link.axis[c], columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c),
-                    columns.quads());
+    add_combination(link.axis[c], columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c), columns.quads());
   }
   value.pull1 = dot3(b1, torque);
   value.gradient0 += dot3(b0, torque);

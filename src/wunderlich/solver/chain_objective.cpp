@@ -84,9 +84,7 @@ inline void fill_joints(const Ribbon& ribbon, const Chain& chain, const Kinemati
   for (std::size_t j = first == 0 ? 1 : 0; j < count; ++j) fill(k.frame[first + j - 1], static_cast<int>(j), links[j]);
 }
 
-void still_joint(ChainLink& link) {
-  link.axis[0] = link.axis[1] = link.axis_01 = link.axis_11 = math::all(0);
-}
+void still_joint(ChainLink& link) { link.axis[0] = link.axis[1] = link.axis_01 = link.axis_11 = math::all(0); }
 
 void fill_node(const ChainProblem& problem, std::size_t i, ChainLink& link) {
   link.chart = 0;
@@ -196,14 +194,14 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
       value.barrier += barrier[static_cast<int>(j)];
     }
   }
-  for (std::size_t i = 0; i <= n; ++i) value.rest -= problem.force[i].dot(k.r[i] - reference.r[i]);
-  value.rest += tie_value(ribbon, problem, chain, k);
+  for (std::size_t i = 0; i <= n; ++i) value.loads -= problem.force[i].dot(k.r[i] - reference.r[i]);
+  value.ties = tie_value(ribbon, problem, chain, k);
   for (const PointLoad& load : problem.loads) {
     const auto i = static_cast<std::size_t>(std::max(load.node, 0));
     const Quat& frame = reference.q[i];
     const Vec3 turn = math::log_map(k.q[i] * frame.conjugate());
-    value.rest -= in_space(load, load.force, frame).dot(k.r[i] - reference.r[i]);
-    value.rest -= in_space(load, load.torque, frame).dot(turn);
+    value.loads -= in_space(load, load.force, frame).dot(k.r[i] - reference.r[i]);
+    value.loads -= in_space(load, load.torque, frame).dot(turn);
   }
   return value;
 }

@@ -64,8 +64,9 @@ std::size_t row_count(const ChainProblem& problem);
 struct ObjectiveValue {
   double elastic = 0;
   double barrier = 0;
-  double rest = 0;  ///< loads and ties
-  double total() const { return elastic + barrier + rest; }
+  double ties = 0;
+  double loads = 0;  ///< minus their work since the reference
+  double total() const { return elastic + barrier + ties + loads; }
 };
 
 /// `reference`: frames that torques are measured from (a torque has no potential; its work is taken to first

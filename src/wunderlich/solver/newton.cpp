@@ -30,15 +30,14 @@ struct Iterate {
   const ChainProblem& problem;
   NewtonWorkspace& work;
   double emphasis = 1;  ///< of the rows' penalties in the merit
-  double merit_of(const Chain& chain, const Kinematics& k, std::vector<double>& residuals) const;
+  double merit(const ObjectiveValue& value, const std::vector<double>& residuals) const;
   double slope() const;
   void weigh_rows();
 };
 
 /// Objective + new multipliers * rows + emphasis penalty/2 * rows^2: the Newton step is a descent direction of it.
-double Iterate::merit_of(const Chain& chain, const Kinematics& k, std::vector<double>& residuals) const {
-  constraint_residuals(ribbon, problem, chain, k, residuals);
-  double merit = objective(ribbon, problem, chain, k, work.kinematics).total();
+double Iterate::merit(const ObjectiveValue& value, const std::vector<double>& residuals) const {
+  double merit = value.total();
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     merit += residuals[i] * (work.step.multiplier[i] + 0.5 * emphasis * work.system.rows[i].penalty * residuals[i]);
   }
@@ -65,14 +64,34 @@ void Iterate::weigh_rows() {
   if (infeasibility > 0 && excess > 0) emphasis += excess / infeasibility;
 }
 
-/// By which the step turns the joint at a node.
-double turn_angle(const NewtonWorkspace& work, std::size_t node) {
+/// Square of the angle by which the step turns the joint at a node.
+double turn_squared(const NewtonWorkspace& work, std::size_t node) {
   const math::Four turn = math::turn_of(work.system.links[node], work.step.u[node]);
-  return std::sqrt(math::dot3(turn, turn));
+  return math::dot3(turn, turn);
+}
+
+/// Largest fold-angle change, displacement / length, and (scaled: it is soft where kappa vanishes) eta change; all go
+/// into the report. Returns the largest fold-angle change alone.
+double measure_step(const Ribbon& ribbon, const NewtonWorkspace& work, NewtonReport& report) {
+  const double shorter = 1 / (ribbon.length * ribbon.length);
+  double most = 0, turn = 0;
+  for (std::size_t i = 0; i < work.step.u.size(); ++i) {
+    const double turned = turn_squared(work, i), moved = work.step.v[i].squaredNorm() * shorter;
+    const double slanted = 1e-6 * work.step.u[i][1] * work.step.u[i][1];
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const double size = turned + moved + slanted < kInfinity ? std::max({turned, moved, slanted}) : kInfinity;
+    turn = std::max(turn, turned);
+    if (size <= most) continue;
+    most = size;
+    report.worst_node = static_cast<int>(i);
+  }
+  report.last_step = std::sqrt(most);
+  return std::sqrt(turn);
 }
 
 /// Shortens the step to keep |x| < 1 and fold angles from jumping.
-double step_limit(const Ribbon& ribbon, const NewtonOptions& options, const Chain& chain, const NewtonWorkspace& work) {
+double step_limit(const Ribbon& ribbon, const NewtonOptions& options, const Chain& chain, const NewtonWorkspace& work,
+                  double largest_turn) {
   double limit = 1;
   const auto& step = work.step;
   for (std::size_t s = 0; s + 1 < step.u.size(); ++s) {
@@ -82,8 +101,7 @@ double step_limit(const Ribbon& ribbon, const NewtonOptions& options, const Chai
     const double room = kBoundaryFraction * (dx > 0 ? 1 - x : 1 + x);
     if (limit * std::abs(dx) > room) limit = room / std::abs(dx);
   }
-  double turn = step.base.tail<3>().norm();
-  for (std::size_t i = 0; i < step.u.size(); ++i) turn = std::max(turn, turn_angle(work, i));
+  const double turn = std::max(step.base.tail<3>().norm(), largest_turn);
   return turn * limit > options.max_turn ? options.max_turn / turn : limit;
 }
 
@@ -95,20 +113,6 @@ void apply_step(const Chain& chain, const math::ChainStep& step, double scale, C
   for (std::size_t i = 0; i < step.u.size(); ++i) {
     trial.kappa[i] = chain.kappa[i] + scale * step.u[i][0];
     trial.eta[i] = chain.eta[i] + scale * step.u[i][1];
-  }
-}
-
-/// Largest fold-angle change, displacement / length, and (scaled: it is soft where kappa vanishes) eta change.
-void measure_step(const Ribbon& ribbon, const NewtonWorkspace& work, NewtonReport& report) {
-  report.last_step = 0;
-  for (std::size_t i = 0; i < work.step.u.size(); ++i) {
-    const Vec2& u = work.step.u[i];
-    const double size = u.allFinite() ? std::max({turn_angle(work, i),
-                                                  work.step.v[i].norm() / ribbon.length, 1e-3 * std::abs(u[1])})
-                                      : std::numeric_limits<double>::infinity();
-    if (size <= report.last_step) continue;
-    report.last_step = size;
-    report.worst_node = static_cast<int>(i);
   }
 }
 
@@ -162,16 +166,23 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
   return false;
 }
 
+/// The trial becomes the iterate; loads are counted from here.
+void move_on(Chain& current, NewtonWorkspace& work) {
+  std::swap(current, work.trial);
+  std::swap(work.kinematics, work.trial_kinematics);
+  work.value = work.trial_value;
+  work.value.loads = 0;
+}
+
 /// The step as far as `scale`, whatever it does to the merit; false if the result is not finite.
 bool take_step(const Iterate& at, Chain& current, double scale, NewtonReport& report) {
   NewtonWorkspace& work = at.work;
   apply_step(current, work.step, scale, work.trial);
   geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
   ++report.evaluations;
-  report.value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
-  if (!std::isfinite(report.value.total())) return false;
-  std::swap(current, work.trial);
-  std::swap(work.kinematics, work.trial_kinematics);
+  work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
+  if (!std::isfinite(work.trial_value.total())) return false;
+  move_on(current, work);
   return true;
 }
 
@@ -191,7 +202,9 @@ bool line_search(const Iterate& at, const Chain& chain, double start, double slo
     apply_step(chain, work.step, scale, work.trial);
     geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
     ++report.evaluations;
-    const double merit = at.merit_of(work.trial, work.trial_kinematics, work.trial_residuals);
+    work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
+    constraint_residuals(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.trial_residuals);
+    const double merit = at.merit(work.trial_value, work.trial_residuals);
     if (std::isfinite(merit) && merit <= start + 1e-4 * scale * slope + rounding) return true;
   }
   return false;
@@ -231,14 +244,14 @@ bool softest_mode(const Ribbon& ribbon, NewtonWorkspace& work) {
 /// Moves the iterate along the direction in work.step, far enough to leave a saddle, little enough that the
 /// constraints, which hold along it to first order only, are not torn.
 void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
-  double turn = 1e-12;
+  double turn = 1e-12, fold = 0;
   for (std::size_t i = 0; i < work.step.u.size(); ++i) {
-    turn = std::max(
-        {turn, turn_angle(work, i), 10 * work.step.v[i].norm() / ribbon.length});
+    fold = std::max(fold, std::sqrt(turn_squared(work, i)));
+    turn = std::max({turn, fold, 10 * work.step.v[i].norm() / ribbon.length});
   }
   NewtonOptions small;
   small.max_turn = kKick;
-  const double scale = std::min(kKick / turn, step_limit(ribbon, small, current, work));
+  const double scale = std::min(kKick / turn, step_limit(ribbon, small, current, work, fold));
   apply_step(current, work.step, scale, work.trial);
   std::swap(current, work.trial);
   geometry::forward_kinematics(ribbon, current, work.kinematics);
@@ -283,8 +296,10 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   double shift = 0;
   int polished = 0;
   geometry::forward_kinematics(ribbon, current, work.kinematics);
+  work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
   const auto accept = [&] {
     report.outcome = NewtonOutcome::converged;
+    report.value = work.value;
     chain = current;
     multipliers = lambda;
     return report;
@@ -299,8 +314,8 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
       report.outcome = NewtonOutcome::singular;
       return report;
     }
-    const double limit = step_limit(ribbon, options, current, work);
-    measure_step(ribbon, work, report);
+    const double turn = measure_step(ribbon, work, report);
+    const double limit = step_limit(ribbon, options, current, work, turn);
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
     // A shift makes steps short that are not the last ones.
@@ -320,12 +335,11 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
       continue;
     }
     at.weigh_rows();
-    const double merit = at.merit_of(current, work.kinematics, work.residuals);
+    const double merit = at.merit(work.value, work.residuals);
     const double slope = at.slope();
     const Stationary kind =
         options.inertial ? Stationary::no : classify(ribbon, options, shift, slope, merit, work, report);
     if (kind == Stationary::minimum) {
-      report.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
       return accept();
     }
     if (kind == Stationary::unshift) {
@@ -335,14 +349,14 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     if (kind == Stationary::saddle && report.kicks < kMaxKicks) {
       ++report.kicks;
       if (softest_mode(ribbon, work)) kick(ribbon, current, work);
+      work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
       continue;
     }
     if (kind == Stationary::saddle || !line_search(at, current, merit, slope, limit, report)) {
       report.outcome = NewtonOutcome::line_search_failed;
       return report;
     }
-    std::swap(current, work.trial);
-    std::swap(work.kinematics, work.trial_kinematics);
+    move_on(current, work);
     lambda = work.step.multiplier;
   }
   return report;

@@ -36,7 +36,7 @@ struct NewtonReport {
   double max_residual = 0;  ///< of the constraint rows (m, rad, 1)
   double last_step = 0;
   int worst_node = 0;    ///< where the last step was largest
-  ObjectiveValue value;  ///< `inertial`: at the end
+  ObjectiveValue value;  ///< at the minimum
   bool converged() const { return outcome == NewtonOutcome::converged; }
 };
 
@@ -49,6 +49,7 @@ struct NewtonWorkspace {
   geometry::Chain current, trial;
   std::vector<double> multipliers;
   std::vector<double> residuals, trial_residuals;
+  ObjectiveValue value, trial_value;
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };
 
