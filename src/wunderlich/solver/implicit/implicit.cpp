@@ -297,7 +297,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
     // How far the supports have moved: the rows' residuals before the step.
     work.start = state.path.chain;
     work.start.base = work.trial.base;
-    geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
+    if (!work.multipliers.empty()) geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
     constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
     report.newton = minimise(ribbon, work.problem, newton_options(options), work.trial, work.multipliers, work.newton);
     report.iterations += report.newton.iterations;
