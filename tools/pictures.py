@@ -22,6 +22,7 @@ MORE = {
     "twist-release-stiff": {"set": ["solver.duration=0.3"]},
     "twist-release-soft": {"set": ["solver.duration=0.3"]},
     "swing": {"set": ["solver.duration=0.72"]},
+    "whip": {"set": ["solver.duration=0.6"]},
 }
 
 STAGE = """<style>

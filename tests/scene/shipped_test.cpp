@@ -28,7 +28,7 @@ TEST(ShippedScenes, AreThoseOfTheContract) {
   for (const ShippedScene& scene : shipped_scenes()) names.insert(scene.name);
   for (const char* name :
        {"moebius", "figure-eight", "twist-pi", "twist-clamped", "cantilever", "buckled-strip", "ring", "helix", "swing",
-        "belt-release-stiff", "belt-release-soft", "twist-release-stiff", "twist-release-soft"}) {
+        "whip", "belt-release-stiff", "belt-release-soft", "twist-release-stiff", "twist-release-soft"}) {
     EXPECT_TRUE(names.count(name)) << name;
   }
 }
