@@ -14,14 +14,15 @@ from pathlib import Path
 LAYERS = {
     "base": [],
     "math": ["base"],
+    "contact": ["base", "math"],
     "geometry": ["base", "math"],
     "energy": ["base", "math", "geometry"],
-    "constraint": ["base", "math", "geometry"],
-    "solver": ["base", "math", "geometry", "energy", "constraint"],
-    "scene": ["base", "math", "geometry", "energy", "constraint", "solver"],
+    "constraint": ["base", "math", "geometry", "contact"],
+    "solver": ["base", "math", "geometry", "energy", "contact", "constraint"],
+    "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver"],
     "io": ["base"],
 }
-CORE = ["base", "math", "geometry", "energy", "constraint", "solver"]
+CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver"]
 # layer -> prefixes of third-party headers it may include; what has no slash and no dot is the standard library
 THIRD_PARTY = {layer: ["Eigen/"] for layer in CORE}
 THIRD_PARTY["scene"] = ["Eigen/", "yaml-cpp/", "fmt/"]

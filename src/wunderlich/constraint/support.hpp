@@ -1,4 +1,4 @@
-/// What the surroundings prescribe: pins, clamps, orientation constraints, and loads, in time.
+/// What the surroundings prescribe: pins, clamps, orientation constraints, loads and obstacles, in time.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wunderlich/base/types.hpp"
+#include "wunderlich/contact/shape.hpp"
 
 namespace wunderlich::constraint {
 
@@ -62,10 +63,25 @@ struct Load {
 
 LoadKey load_at(const Load& load, double time);
 
+/// A solid that the strip cannot enter, at rest or moving; its own frame follows `motion`.
+struct Obstacle {
+  contact::Shape shape;
+  Motion motion;
+  double friction = 0;  ///< Coulomb's coefficient
+};
+
+/// How the strip and the obstacles touch.
+struct Contact {
+  double distance = 0;   ///< at which forces begin [m]
+  double thickness = 0;  ///< gap that stays between the strip's middle surface and a solid [m]
+};
+
 /// Everything imposed from outside.
 struct Surroundings {
   std::vector<Support> supports;
   std::vector<Load> loads;
+  std::vector<Obstacle> obstacles;
+  Contact contact;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
 };
 

@@ -81,8 +81,7 @@ const std::vector<Key> table = {
      "false",
      {},
      "Implicit: correct the velocities after each step so that energy, and momenta of a strip on which nothing acts, "
-     "are "
-     "kept, impulses apart."},
+     "are kept."},
     {"solver.error",
      Type::number,
      "",
