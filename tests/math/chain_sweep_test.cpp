@@ -67,6 +67,13 @@ ChainSystem random_system(int links, const std::array<bool, 6>& base_fixed, doub
     }
     system.turns.push_back(term);
   }
+  for (int node = links - 1; node >= 0; node -= 2) {
+    math::SurfaceTerm term;
+    term.node = node;
+    for (Index k = 0; k < 8; ++k) term.gradient[k] = random();
+    term.hessian = 0.1 * random.symmetric(8, 8 * softness);
+    system.surfaces.push_back(term);
+  }
   for (const int node : {links, links / 2, 0}) {
     math::PoseTerm term;
     term.node = node;

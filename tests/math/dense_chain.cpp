@@ -98,6 +98,16 @@ DenseChain dense_chain(const ChainSystem& system) {
       out.gradient += term.hessian[a][3] * theta.row(a).transpose();
     }
   }
+  for (const math::SurfaceTerm& term : system.surfaces) {
+    const auto i = static_cast<std::size_t>(term.node);
+    MatrixXd map = MatrixXd::Zero(8, size);
+    map.topRows<3>() =
+        poses[i].topRows<3>() - math::skew(math::first_three(system.links[i].span)) * poses[i].bottomRows<3>();
+    map.middleRows<3>(3) = poses[i].bottomRows<3>();
+    map(6, 7 + 2 * term.node) = map(7, 9 + 2 * term.node) = 1;
+    out.hessian += map.transpose() * (term.hessian + (system.geometric ? 1 : 0) * term.geometric) * map;
+    out.gradient += map.transpose() * term.gradient;
+  }
   add_links(system, out);
   add_rows(system, poses, out);
   for (Index k = 0; k < size; ++k) {

@@ -140,7 +140,10 @@ class Sweep {
       if (k < system_.turns.size()) add_turn(system_.turns[k], share, system_.geometric, value);
       pass_joint(link, system_.geometric, value, columns_);
       if (i == 0) add_first_u(value);
-      if (!eliminate(k, share, value, step)) return false;
+      const SurfaceTerm* surface = nullptr;
+      if (next.surface < system_.surfaces.size() && system_.surfaces[next.surface].node == i - 1)
+        surface = &system_.surfaces[next.surface++];
+      if (!eliminate(k, surface, share, value, step)) return false;
       if (i > 0) pass_span(system_.links[k - 1].span, system_.geometric, value, columns_);
     }
     add_pose_parts(system_, -1, next, value, columns_);
@@ -204,9 +207,16 @@ class Sweep {
     }
   }
 
-  /// Takes in the energy of link i - 1 and eliminates u_i; what is left depends on u_{i-1}.
-  bool eliminate(std::size_t i, double share, Value& value, ChainStep& step) {
+  /// Takes in the energy of link i - 1, and what its surface feels, and eliminates u_i; what is left depends on
+  /// u_{i-1}.
+  bool eliminate(std::size_t i, const SurfaceTerm* surface, double share, Value& value, ChainStep& step) {
     const ChainLink* before = i > 0 ? &system_.links[i - 1] : nullptr;
+    Mat8 felt;
+    if (surface) {
+      felt = surface->hessian;
+      if (system_.geometric) felt += surface->geometric;
+      add_surface(*surface, felt, share, value);
+    }
     if (system_.only_load) {
       value.ut[0] += last_lane((*system_.only_load)[i][0]);
       value.ut[1] += last_lane((*system_.only_load)[i][1]);
@@ -238,7 +248,7 @@ class Sweep {
       return true;
     }
     const double c00 = before->hess_ab(0, 0), c01 = before->hess_ab(0, 1);
-    const double c10 = before->hess_ab(1, 0), c11 = before->hess_ab(1, 1);
+    const double c10 = before->hess_ab(1, 0), c11 = before->hess_ab(1, 1) + (surface ? felt(6, 7) : 0);
     const double p00 = i00 * c00 + i01 * c01, p01 = i00 * c10 + i01 * c11;
     const double p10 = i01 * c00 + i11 * c01, p11 = i01 * c10 + i11 * c11;
     gain.previous = Four{p00, p10, p01, p11};
@@ -249,6 +259,12 @@ class Sweep {
     value.gradient1 = before->grad_a[1];
     couple(c00, c01, gain, 0, share * before->grad_a[0], value, solved_columns(i));
     couple(c10, c11, gain, 1, share * before->grad_a[1], value, solved_columns(i));
+    if (surface) {
+      value.uv[1] += four(felt.block<1, 3>(6, 0).transpose());
+      value.ut[1] += four(felt.block<1, 3>(6, 3).transpose(), share * surface->gradient[6]);
+      value.z11 += felt(6, 6);
+      value.gradient1 += surface->gradient[6];
+    }
     return true;
   }
 

@@ -21,6 +21,8 @@ namespace wunderlich::math {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Vec8 = Eigen::Matrix<double, 8, 1>;
+using Mat8 = Eigen::Matrix<double, 8, 8>;
 
 /// First and second derivatives of the objective around one node: the joint at node i, the node, link i.
 /// Vectors of space have a fourth lane that is 0.
@@ -63,6 +65,15 @@ struct TurnTerm {
   Four geometric[3];  ///< further Hessian of terms that carry forces; the fourth lanes are 0
 };
 
+/// A term in the points of one link's facet. In (v of node i + 1, theta of link i, u_1 of joint i, u_1 of joint i + 1),
+/// in which a point between two rulings moves.
+struct SurfaceTerm {
+  int node;  ///< link i, one with a span
+  Vec8 gradient = Vec8::Zero();
+  Mat8 hessian = Mat8::Zero();
+  Mat8 geometric = Mat8::Zero();  ///< further Hessian, of what carries forces
+};
+
 /// The turn of the joint by du, about the axis it has.
 inline Four turn_of(const ChainLink& link, const Vec2& du) {
   return all(du[0]) * link.axis[0] + all(du[1]) * link.axis[1];
@@ -73,6 +84,7 @@ struct ChainSystem {
   std::vector<ChainLink> links;        ///< N + 1 entries; the last has no link, only joint and node
   std::vector<ChainRow> rows;          ///< probes, then constraints; each sorted by decreasing node
   std::vector<PoseTerm> pose_terms;    ///< sorted by decreasing node
+  std::vector<SurfaceTerm> surfaces;   ///< at most one a link, sorted by decreasing node
   std::vector<TurnTerm> turns;         ///< (N) or none, of the links with a span
   Eigen::MatrixXd follower;            ///< (probes x probes) unsymmetric part of the Hessian, in the
                                        ///< coordinates of as many probe rows: loads without a potential

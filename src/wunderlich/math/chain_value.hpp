@@ -47,7 +47,7 @@ struct Value {
 
 /// Where the sorted lists of pose terms, probe rows and constraint rows stand.
 struct Cursor {
-  std::size_t term, probe, row;
+  std::size_t term, probe, row, surface = 0;
 };
 
 /// 1, or 0 where the right-hand side is a load of its own.
@@ -87,6 +87,21 @@ inline void add_turn(const TurnTerm& term, double share, bool geometric, Value& 
   for (int i = 0; i < 3; ++i) value.tt[i] += shares * term.hessian[i];
   for (int i = 0; i < 3 && geometric; ++i) value.tt[i] += term.geometric[i];
   value.torque += Four{term.hessian[0][3], term.hessian[1][3], term.hessian[2][3], 0};
+}
+
+/// Everything of a surface's term but what couples it to u_1 of the joint before.
+inline void add_surface(const SurfaceTerm& term, const Mat8& hessian, double share, Value& value) {
+  for (int i = 0; i < 3; ++i) {
+    value.vv[i] += four(hessian.block<1, 3>(i, 0).transpose());
+    value.vt[i] += four(hessian.block<1, 3>(i, 3).transpose(), share * term.gradient[i]);
+    value.tt[i] += four(hessian.block<1, 3>(3 + i, 3).transpose(), share * term.gradient[3 + i]);
+  }
+  value.uv[1] += four(hessian.block<1, 3>(7, 0).transpose());
+  value.ut[1] += four(hessian.block<1, 3>(7, 3).transpose(), share * term.gradient[7]);
+  value.z11 += hessian(7, 7);
+  value.gradient1 += term.gradient[7];
+  value.force += four(term.gradient.head<3>());
+  value.torque += four(term.gradient.segment<3>(3));
 }
 
 /// A pose term's or row's share at its link; row k is constraint column k.
