@@ -69,20 +69,15 @@ struct Motion {
 
   void restart() { state = implicit::start(path, options, geometry::straight_state(path.ribbon), Vec3::Zero(), work); }
 
-  /// Divides steps that fail.
-  void advance(double t1) {
-    double target = t1;
-    while (state.path.t < t1 - 1e-12) {
-      const implicit::StepReport report = implicit::step(path, options, target, state, work);
-      iterations += report.iterations;
-      if (report.accepted) {
-        target = t1;
-        continue;
-      }
-      ++divided;
-      target = state.path.t + 0.5 * (target - state.path.t);
-      if (target - state.path.t < kStep / 1000) std::abort();
-    }
+  /// Halves steps that fail.
+  void advance(double t1, int halvings = 0) {
+    const implicit::StepReport report = implicit::step(path, options, t1, halvings, state, work);
+    iterations += report.iterations;
+    if (report.accepted) return;
+    ++divided;
+    if (halvings == 10) std::abort();
+    advance(state.path.t + 0.5 * (t1 - state.path.t), halvings + 1);
+    advance(t1, halvings + 1);
   }
 
   void advance_by(int steps) {

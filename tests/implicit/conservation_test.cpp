@@ -37,9 +37,11 @@ TEST(Energy, OfATiltedSwingIsLostAtTheFlatState) {
   EXPECT_LE(change, 5e-2);
 }
 
-/// The soft sheet whips for 2 s at 1 ms: the energy at the end and its largest change, over the largest kinetic energy.
+/// The soft sheet whips for 2 s at 1 ms. Over the largest kinetic energy: the largest change of the energy; the same
+/// with what is still to be put right; and the change at the end.
 struct Whip {
-  double end = 0, most = 0;
+  double most = 0, open = 0, end = 0;
+  int impulses = 0;
 };
 
 Whip whip(double tilt, bool conserve) {
@@ -51,23 +53,28 @@ Whip whip(double tilt, bool conserve) {
     EXPECT_TRUE(move_to(1e-3 * i, m)) << m.failure;
     out.end = std::abs(total_energy(m) - before);
     out.most = std::max(out.most, out.end);
+    out.open = std::max(out.open, std::abs(total_energy(m) + m.state.missing - before));
   }
-  out.end /= m.state.peak;
-  out.most /= m.state.peak;
+  for (double* value : {&out.most, &out.open, &out.end}) *value /= m.state.peak;
+  out.impulses = m.impulses;
   return out;
 }
 
-/// Energy goes into waves that no step resolves, unless velocities are corrected.
+/// Energy goes into waves that no step resolves, and into impulses, unless velocities are corrected.
 TEST(Energy, OfAWhipIsKeptWhereVelocitiesAreCorrected) {
+  int impulses = 0;
   for (const double tilt : {0.0, 0.3}) {
     const std::string where = tilt > 0 ? ", out of its plane" : ", in its plane";
     const Whip corrected = whip(tilt, true), plain = whip(tilt, false);
-    show("energy of a whip" + where, corrected.end, 1e-9);
-    show("its largest change", corrected.most, 1e-9);
+    show("energy of a whip" + where, corrected.most, 1e-9);
+    show("the same with what is carried on", corrected.open, 1e-9);
     show("not corrected", plain.end, 1e-9);
-    EXPECT_LE(corrected.end, 1e-9);
+    EXPECT_LE(corrected.open, 1e-9);
+    EXPECT_LE(corrected.most, 0.05);  // a turning point may leave some for the next steps
     EXPECT_TRUE(is_slow_build() || plain.end > 0.1);
+    impulses += corrected.impulses;
   }
+  EXPECT_TRUE(is_slow_build() || impulses > 0);
 }
 
 /// Energy that a clamp puts in which starts at once, moves and turns, in steps of `dt`.
@@ -75,9 +82,9 @@ double driven(double dt, bool conserve) {
   Motion m = between_clamps();
   m.options.conserve = conserve;
   const double before = total_energy(m);
-  for (int i = 1; i * dt < (is_slow_build() ? 0.03 : 0.4); ++i) {
-    EXPECT_TRUE(move_to(i * dt, m)) << m.failure;
-    if (::testing::Test::HasFailure()) break;
+  const long steps = std::lround((is_slow_build() ? 0.032 : 0.4) / dt);
+  for (long i = 1; i <= steps && !::testing::Test::HasFailure(); ++i) {
+    EXPECT_TRUE(move_to(static_cast<double>(i) * dt, m)) << m.failure;
   }
   return total_energy(m) - before;
 }

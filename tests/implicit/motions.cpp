@@ -20,7 +20,8 @@ constexpr int kMostHalvings = 8;
 
 bool move(double t1, int halvings, Motion& motion) {
   motion.deepest = std::max(motion.deepest, halvings);
-  const implicit::StepReport report = implicit::step(motion.path, motion.options, t1, motion.state, motion.work);
+  const implicit::StepReport report =
+      implicit::step(motion.path, motion.options, t1, halvings, motion.state, motion.work);
   ++motion.steps;
   motion.iterations += report.iterations;
   motion.repeats += report.repeats;

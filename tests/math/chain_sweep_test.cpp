@@ -49,6 +49,7 @@ ChainSystem random_system(int links, const std::array<bool, 6>& base_fixed, doub
     for (math::Four* vector : {&link.axis[0], &link.axis[1], &link.axis_01, &link.axis_11, &link.span, &link.force})
       *vector = math::four(random.vector());
     link.stiffness = std::abs(random());
+    link.chart = 0.05 * random();
     link.grad_a = random.pair();
     link.grad_b = random.pair();
     const Mat4 h = random.symmetric(4, softness);
@@ -71,7 +72,7 @@ ChainSystem random_system(int links, const std::array<bool, 6>& base_fixed, doub
     math::SurfaceTerm term;
     term.node = node;
     for (Index k = 0; k < 8; ++k) term.gradient[k] = random();
-    term.hessian = 0.1 * random.symmetric(8, 8 * softness);
+    term.hessian = 0.03 * random.symmetric(8, 8 * softness);
     system.surfaces.push_back(term);
   }
   for (const int node : {links, links / 2, 0}) {
@@ -198,12 +199,14 @@ TEST(ChainSweep, ReportsWhatIsSingular) {
   flat.shift = {0, 0};
   for (auto& link : flat.links) {
     link.axis[1] = math::all(0);
+    link.chart = 0;
     for (Mat2* block : {&link.hess_aa, &link.hess_ab, &link.hess_bb}) {
       block->row(1).setZero();
       block->col(1).setZero();
     }
   }
   flat.rows.clear();
+  flat.surfaces.clear();
   EXPECT_FALSE(chain_step(flat, work, step));  // nothing depends on the second coordinate
   system.links[2].force = math::four(Vec3(0, std::nan(""), 0));
   EXPECT_FALSE(chain_step(system, work, step));

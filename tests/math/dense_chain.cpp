@@ -64,6 +64,28 @@ void add_rows(const ChainSystem& system, const std::vector<MatrixXd>& poses, Den
   out.follower = probe.transpose() * system.follower * probe;
 }
 
+/// Curved lines in u_1 bend the Hessian by the gradient, here without what the torque on the joint is of it.
+void add_charts(const ChainSystem& system, DenseChain& out) {
+  VectorXd own = VectorXd::Zero(static_cast<Index>(system.links.size()));
+  for (Index i = 0; i + 1 < own.size(); ++i) {
+    own[i] += system.links[static_cast<std::size_t>(i)].grad_a[1];
+    own[i + 1] += system.links[static_cast<std::size_t>(i)].grad_b[1];
+  }
+  for (const math::SurfaceTerm& term : system.surfaces) {
+    own[term.node] += term.gradient[6];
+    own[term.node + 1] += term.gradient[7];
+  }
+  for (const math::ChainRow& row : system.rows) {
+    own[row.node] += row.multiplier * row.u[1];
+    own[0] += row.multiplier * row.first_u[1];
+  }
+  for (Index i = 0; i < own.size(); ++i) {
+    const double bend = system.links[static_cast<std::size_t>(i)].chart * own[i];
+    out.hessian(6 + 2 * i, 7 + 2 * i) -= bend;
+    out.hessian(7 + 2 * i, 6 + 2 * i) -= bend;
+  }
+}
+
 MatrixXd columns(const MatrixXd& matrix, const std::vector<Index>& which) {
   MatrixXd out(matrix.rows(), static_cast<Index>(which.size()));
   for (std::size_t k = 0; k < which.size(); ++k) out.col(static_cast<Index>(k)) = matrix.col(which[k]);
@@ -110,6 +132,7 @@ DenseChain dense_chain(const ChainSystem& system) {
   }
   add_links(system, out);
   add_rows(system, poses, out);
+  if (!system.geometric) add_charts(system, out);
   for (Index k = 0; k < size; ++k) {
     if (k >= 6 || !system.base_fixed[static_cast<std::size_t>(k)]) out.free.push_back(k);
   }

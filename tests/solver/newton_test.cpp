@@ -262,6 +262,7 @@ TEST(TorsionChart, MakesTheBendingEnergyConvex) {
     hessian(0, 1) -= link.chart * (before.grad_b + link.grad_a)[1];
     hessian(1, 0) = hessian(0, 1);
     EXPECT_GT(hessian.determinant(), 0) << "eta " << eta;
+    EXPECT_GT(hessian(0, 0), 0);
   }
   EXPECT_GT(concave, 25);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/scene/cursor.hpp"
@@ -28,7 +29,7 @@ void visit_all(double& impulses, implicit::State& state, const Visit& visit) {
   const auto whole = [&](int& number) {
     double real = number;
     visit(real);
-    number = real >= 0 && real < 1e6 ? static_cast<int>(real) : 0;
+    number = real >= 0 && real < 1e6 && real == std::floor(real) ? static_cast<int>(real) : -1;
   };
   const auto vectors = [&](auto& list) {
     for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
@@ -42,8 +43,7 @@ void visit_all(double& impulses, implicit::State& state, const Visit& visit) {
   for (auto& kappa : state.before.kappa) visit(kappa);
   for (auto& eta : state.before.eta) visit(eta);
   whole(state.level), whole(state.calm);
-  for (double* number : {&state.last_step, &state.usual_step, &state.elastic, &state.peak, &state.missing})
-    visit(*number);
+  for (double* number : {&state.last_step, &state.elastic, &state.peak, &state.missing}) visit(*number);
   for (int c = 0; c < 3; ++c) visit(state.momentum.linear[c]), visit(state.momentum.angular[c]);
   for (auto& c : state.base_reaction) visit(c);
 }
@@ -57,9 +57,9 @@ class ImplicitMover : public Mover {
     shape_ = implicit::shape_of(problem_, state_);
   }
 
-  Move step(double, double t1, Recording& recording) override {
+  Move step(double, double t1, int halvings, Recording& recording) override {
     const Stopwatch watch;
-    const implicit::StepReport report = implicit::step(problem_, scene_.solver.implicit, t1, state_, work_);
+    const implicit::StepReport report = implicit::step(problem_, scene_.solver.implicit, t1, halvings, state_, work_);
     recording.add_phase_time("minimise", watch.seconds());
     impulses_ += report.inelastic ? 1 : 0;
     if (report.accepted) shape_ = implicit::shape_of(problem_, state_);
@@ -109,6 +109,8 @@ class ImplicitMover : public Mover {
     if (static_cast<std::ptrdiff_t>(size) != numbers.end() - end) broken();
     auto next = end;
     visit_all(impulses_, state_, [&](double& number) { number = *next++; });
+    const bool fits = state_.level >= 0 && state_.level < implicit::kDampingLevels && state_.calm >= 0;
+    if (!fits || state_.path.phase != solver::Phase::load) broken();
     shape_ = implicit::shape_of(problem_, state_);
   }
 

@@ -44,7 +44,7 @@ class TwoStageMover : public Mover {
 
   void start(const geometry::State& shape) override { state_ = two_stage::start(ribbon_, shape); }
 
-  Move step(double t0, double t1, Recording& recording) override {
+  Move step(double t0, double t1, int, Recording& recording) override {
     const two_stage::Drive drive = drive_between(scene_, ribbon_, state_.shape, t0, t1);
     const two_stage::StepReport report =
         two_stage::step(ribbon_, drive, scene_.solver.two_stage, t1 - t0, state_, work_);

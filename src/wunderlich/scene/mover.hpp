@@ -25,7 +25,8 @@ class Mover {
   virtual ~Mover() = default;
   virtual void start(const geometry::State& shape) = 0;
   /// One step; a step that fails leaves everything as it was. Times of phases go to the recording.
-  virtual Move step(double t0, double t1, Recording& recording) = 0;
+  /// `halvings`: how often it has been halved.
+  virtual Move step(double t0, double t1, int halvings, Recording& recording) = 0;
   /// Takes the supports that hold from now on, after some have let go.
   virtual void release() = 0;
   virtual const geometry::Ribbon& ribbon() const = 0;

@@ -77,16 +77,16 @@ struct Motion {
 
   /// From t0 to t1; a step that fails is tried again in halves.
   bool advance(double t0, double t1, int halvings, int& used) {
-    const Move move = mover->step(t0, t1, recording);
+    const Move move = mover->step(t0, t1, halvings, recording);
     used += move.iterations;
     if (move.accepted) {
       ++taken;
       return true;
     }
     failure = move.failure;
-    if (halvings == 0) return false;
+    if (halvings == kMaxHalvings) return false;
     const double middle = 0.5 * (t0 + t1);
-    return advance(t0, middle, halvings - 1, used) && advance(middle, t1, halvings - 1, used);
+    return advance(t0, middle, halvings + 1, used) && advance(middle, t1, halvings + 1, used);
   }
 
   /// Up to t1, with a stop wherever a support lets go.
@@ -97,7 +97,7 @@ struct Motion {
       for (const constraint::Support& support : scene.surroundings.supports) {
         if (support.release > t0 * (1 + 1e-9) && support.release < next * (1 - 1e-9)) next = support.release;
       }
-      if (!advance(t0, next, kMaxHalvings, used)) return false;
+      if (!advance(t0, next, 0, used)) return false;
       if (released(t0, next)) mover->release();
     }
     return true;

@@ -27,41 +27,53 @@ Vec3 rigid(const Vec6& twist, const Ribbon& ribbon, const Points& points, std::s
 }
 
 /// The rigid motion with the given momenta. A straight strip without inertia about itself has more than one; least.
-Vec6 twist_of(const Ribbon& ribbon, KineticEnergy kinetic, const std::vector<double>& eta, const Points& points,
-              const Momentum& wanted) {
-  Points unit = points;
+Vec6 twist_of(const Ribbon& ribbon, KineticEnergy kinetic, const std::vector<double>& eta, const Momentum& wanted,
+              Points& unit) {
   math::Mat6 inertia;
   for (Eigen::Index c = 0; c < 6; ++c) {
     const Vec6 twist = Vec6::Unit(c);
-    for (std::size_t i = 0; i < points.x.size(); ++i) unit.v[i] = rigid(twist, ribbon, points, i);
+    for (std::size_t i = 0; i < unit.x.size(); ++i) unit.v[i] = rigid(twist, ribbon, unit, i);
     inertia.col(c) = joined(momentum(ribbon, kinetic, unit, eta));
   }
   return inertia.completeOrthogonalDecomposition().solve(joined(wanted));
 }
 
+/// f of the kinetic energy kept + f coupling + f^2 rest that is wanted; 1 where nothing can be scaled.
+double scale(double wanted, double kept, double coupling, double rest) {
+  if (!(rest > 0)) return 1;
+  const double root = coupling * coupling - 4 * rest * (kept - wanted);
+  return (std::sqrt(std::max(0.0, root)) - coupling) / (2 * rest);
+}
+
 }  // namespace
 
 double conserve(const Ribbon& ribbon, KineticEnergy kinetic, const std::vector<double>& eta, const Conserved& wanted,
-                Points& points) {
-  std::vector<Vec3> whole(points.x.size(), Vec3::Zero());  // the part of the velocity that momenta decide
-  double of_whole = 0;
+                ConserveWorkspace& work, Points& points) {
+  Points &kept = work.kept, &rest = work.rest;
+  kept.x = rest.x = points.x;
+  rest.v = points.v;
+  kept.v.assign(points.v.size(), Vec3::Zero());
   if (wanted.momentum != nullptr) {
-    const Vec6 now = twist_of(ribbon, kinetic, eta, points, momentum(ribbon, kinetic, points, eta));
-    const Vec6 goal = twist_of(ribbon, kinetic, eta, points, *wanted.momentum);
-    Points rigid_motion = points;
+    const Vec6 now = twist_of(ribbon, kinetic, eta, momentum(ribbon, kinetic, points, eta), kept);
+    const Vec6 goal = twist_of(ribbon, kinetic, eta, *wanted.momentum, kept);
     for (std::size_t i = 0; i < points.x.size(); ++i) {
-      whole[i] = rigid_motion.v[i] = rigid(goal, ribbon, points, i);
-      points.v[i] += whole[i] - rigid(now, ribbon, points, i);
+      kept.v[i] = rigid(goal, ribbon, points, i);
+      rest.v[i] -= rigid(now, ribbon, points, i);
     }
-    of_whole = kinetic_energy(ribbon, kinetic, rigid_motion, eta);
   }
-  // Rigid motion and the rest are orthogonal in the kinetic energy.
-  const double rest = kinetic_energy(ribbon, kinetic, points, eta) - of_whole;
-  if (!(rest > 0)) return wanted.kinetic - of_whole;
-  const double exact = std::sqrt(std::max(0.0, (wanted.kinetic - of_whole) / rest));
-  const double factor = std::clamp(exact, 1 - kLargestChange, 1 + kLargestChange);
-  for (std::size_t i = 0; i < points.v.size(); ++i) points.v[i] = whole[i] + factor * (points.v[i] - whole[i]);
-  return wanted.kinetic - of_whole - factor * factor * rest;
+  for (const std::size_t i : work.held) {
+    kept.v[i] += rest.v[i];
+    rest.v[i].setZero();
+  }
+  for (std::size_t i = 0; i < points.v.size(); ++i) points.v[i] = kept.v[i] + rest.v[i];
+  const double all = kinetic_energy(ribbon, kinetic, points, eta);
+  const double of_kept = kinetic_energy(ribbon, kinetic, kept, eta);
+  const double of_rest = kinetic_energy(ribbon, kinetic, rest, eta);
+  const double coupling = all - of_kept - of_rest;
+  const double factor =
+      std::clamp(scale(wanted.kinetic, of_kept, coupling, of_rest), 1 - kLargestChange, 1 + kLargestChange);
+  for (std::size_t i = 0; i < points.v.size(); ++i) points.v[i] = kept.v[i] + factor * rest.v[i];
+  return wanted.kinetic - of_kept - factor * (coupling + factor * of_rest);
 }
 
 }  // namespace wunderlich::solver::implicit

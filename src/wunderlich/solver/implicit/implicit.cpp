@@ -17,14 +17,14 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr std::array<double, 4> kRho{0.9, 0.6, 0.3, 0};  // what generalised-alpha leaves of the fastest oscillation
+constexpr std::array<double, kDampingLevels> kRho{0.9, 0.6, 0.3,
+                                                  0};  // what generalised-alpha leaves of the fastest oscillation
 constexpr double kGrowth = 1e-3;       // of the energy in one step, over the largest kinetic energy: more is no motion
 constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
 constexpr int kCalmSteps = 50;         // before less damping is tried again
-constexpr int kInelastic = static_cast<int>(kRho.size());  // level of damping beyond those: Euler's
-constexpr double kShortened = 0.3;                         // of the usual step: what is shorter may be inelastic
-constexpr double kForgotten = 0.1;                         // share of the usual step that a shorter one takes off
-constexpr double kProbe = 0.02;                            // of the strip's own time: the step that finds accelerations
+constexpr int kInelastic = kDampingLevels;  // beyond those: Euler's
+constexpr int kShortened = 2;               // halvings of a step that may be inelastic
+constexpr double kProbe = 0.02;             // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
 constexpr double kFlat = 1e-4;       // curvature over 1/length that counts as none
 constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
@@ -155,6 +155,21 @@ std::string why(const NewtonReport& report, double t, double h) {
   return text + "energy grows";
 }
 
+/// Points that supports move.
+void find_held(const Ribbon& ribbon, const Options& options, const ChainProblem& problem,
+               std::vector<std::size_t>& held) {
+  held.clear();
+  const auto n = static_cast<std::size_t>(ribbon.segments);
+  const auto& fixed = problem.base_fixed;
+  if (fixed[0] && fixed[1] && fixed[2]) held.push_back(0);
+  for (const Hold& hold : problem.holds) {
+    const auto node = static_cast<std::size_t>(hold.node);
+    if (hold.position[0] && hold.position[1] && hold.position[2]) held.push_back(node);
+    const bool turns = hold.orientation == constraint::Orientation::full && node < n;
+    if (turns && options.kinetic != KineticEnergy::centerline) held.push_back(n + 1 + node);
+  }
+}
+
 /// Corrects the velocities of the step under way so that the energy has not grown.
 void keep_conserved(const Ribbon& ribbon, const Options& options, double growth, State& state, Workspace& work) {
   const ChainProblem& problem = work.problem;
@@ -166,7 +181,8 @@ void keep_conserved(const Ribbon& ribbon, const Options& options, double growth,
   Conserved wanted;
   wanted.kinetic = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta) - growth + state.missing;
   if (!held && !pushed) wanted.momentum = &state.momentum;
-  state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.points);
+  find_held(ribbon, options, problem, work.conserve.held);
+  state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.conserve, work.points);
   if (wanted.momentum == nullptr) state.momentum = momentum(ribbon, options.kinetic, work.points, work.trial.eta);
 }
 
@@ -176,9 +192,9 @@ int damp_more(const Options& options, int level) {
 
 /// Is there more damping to offer? At last Euler's: its velocity is that of the step, so that it takes up an impulse
 /// without a rebound, which the others exaggerate at any step length. First, shorter steps must have been no help.
-bool can_damp(const Options& options, const State& state, double h) {
+bool can_damp(const Options& options, const State& state, int halvings) {
   if (options.integrator == Integrator::euler || state.level == kInelastic) return false;
-  return damp_more(options, state.level) < kInelastic || h <= kShortened * state.usual_step;
+  return damp_more(options, state.level) < kInelastic || halvings >= kShortened;
 }
 
 /// Length of a step that finds accelerations: short against the strip's own time, long against rounding.
@@ -278,12 +294,12 @@ void change_supports(const PathProblem& before, const PathProblem& after, State&
   note_frames(after, state.path);
 }
 
-StepReport step(const PathProblem& path, const Options& options, double t1, State& state, Workspace& work) {
+StepReport step(const PathProblem& path, const Options& options, double t1, int halvings, State& state,
+                Workspace& work) {
   const Ribbon& ribbon = path.ribbon;
   const double h = t1 - state.path.t;
   StepReport report;
   const int level = state.level;
-  state.usual_step = std::max(state.usual_step, h);
   const double kinetic0 = kinetic_energy(ribbon, options.kinetic, state.points, state.path.chain.eta);
   double growth = 0;  // of the energy, beyond the work of loads and supports
   for (;; state.level = damp_more(options, state.level), ++report.repeats) {
@@ -316,8 +332,10 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
              support_work(work.problem, scheme, state, work.start, work, work.residuals);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
-    if (grows && can_damp(options, state, h)) continue;
-    if (grows || (options.error > 0 && report.error > options.error)) {
+    if (grows && can_damp(options, state, halvings)) continue;
+    // What an impulse changes at once is no error of the step's length.
+    const bool coarse = options.error > 0 && report.error > options.error && state.level != kInelastic;
+    if (grows || coarse) {
       state.level = level;
       report.failure = grows ? "the energy grows by " + std::to_string(growth / peak) +
                                    " of the largest kinetic energy in a step of " + std::to_string(h) + " s"
@@ -330,11 +348,10 @@ StepReport step(const PathProblem& path, const Options& options, double t1, Stat
   }
   // The work of loads without a potential is not known.
   if (options.conserve && work.problem.loads.empty()) keep_conserved(ribbon, options, growth, state, work);
-  state.calm = report.repeats > 0 ? 0 : state.calm + 1;
+  state.calm = report.repeats > 0 ? 0 : std::min(state.calm, kCalmSteps) + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
   state.before = state.path.chain;
   state.last_step = h;
-  state.usual_step += kForgotten * (h - state.usual_step);
   std::swap(state.path.chain, work.trial);
   std::swap(state.path.multipliers, work.multipliers);
   std::swap(state.points, work.points);

@@ -5,6 +5,7 @@
 /// the time); inertia ties the strip to where it was going.   @eq Shen2015:6 @eq Martin2011
 #pragma once
 
+#include "wunderlich/solver/implicit/conserve.hpp"
 #include "wunderlich/solver/implicit/types.hpp"
 
 namespace wunderlich::solver::implicit {
@@ -16,6 +17,7 @@ struct Workspace {
   std::vector<double> multipliers, residuals;
   std::vector<Vec3> x;
   Points points;
+  ConserveWorkspace conserve;
   geometry::Kinematics kinematics;
 };
 
@@ -30,8 +32,10 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
 /// The same motion on a strip that is held otherwise (a clamp has let go): joint coordinates anew, velocities kept.
 void change_supports(const PathProblem& before, const PathProblem& after, State& state);
 
-/// One step from `state.path.t` to t1; a step that fails leaves the state as it was and says why.
-StepReport step(const PathProblem& path, const Options& options, double t1, State& state, Workspace& work);
+/// One step from `state.path.t` to t1; a step that fails leaves the state as it was and says why. `halvings`: how often
+/// the step that was asked for has been halved because it failed; from two on an impulse may be taken up as one.
+StepReport step(const PathProblem& path, const Options& options, double t1, int halvings, State& state,
+                Workspace& work);
 
 /// The paper's coordinates, with the nodes' velocities.
 geometry::State shape_of(const PathProblem& path, const State& state);

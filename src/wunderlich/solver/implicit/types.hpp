@@ -9,6 +9,8 @@
 
 namespace wunderlich::solver::implicit {
 
+constexpr int kDampingLevels = 4;  ///< of what a step does not resolve
+
 struct Options {
   Integrator integrator = Integrator::generalised_alpha;
   KineticEnergy kinetic = KineticEnergy::rotary;
@@ -27,9 +29,8 @@ struct State {
   PathState path;  ///< joint coordinates, multipliers, carried frames; phase `load`, t the time [s]
   Points points;
   geometry::Chain before;                         ///< joint coordinates a step earlier, for the prediction
-  double last_step = 0;                           ///< [s]; 0 before the first, and where something has let go
-  double usual_step = 0;                          ///< [s] that is tried where nothing makes it shorter
-  int level = 0;                                  ///< of the damping of what a step does not resolve: 0 ... 3
+  double last_step = 0;                           ///< [s]; 0 before the first, and after a release or an impulse
+  int level = 0;                                  ///< of damping: 0 ... kDampingLevels - 1
   int calm = 0;                                   ///< steps since it was raised
   double elastic = 0;                             ///< energy with the barrier, now [J]
   double peak = 0;                                ///< largest kinetic energy so far [J]
