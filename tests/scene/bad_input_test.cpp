@@ -22,7 +22,7 @@ TEST(BadInput, UnknownKeysNameThePlaceAndTheNearMiss) {
 }
 
 TEST(BadInput, KeysOfLaterVersionsAreNotTypingErrors) {
-  for (const char* text : {"contact: {self: true}", "obstacles: []", "ribbons: []"}) {
+  for (const char* text : {"contact: {self: true}", "ribbons: []"}) {
     expect_all(message_of(strip + text), {"bad.yaml:2:", "not supported yet by this version"});
   }
   expect_all(message_of(strip + "solver: {method: newton}"),

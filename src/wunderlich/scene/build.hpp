@@ -11,9 +11,13 @@ namespace wunderlich::scene {
 /// The strip, without `clamped`, which follows from the clamps.
 geometry::RibbonSpec build_ribbon(const Cell& root);
 
-/// Clamps, pins, forces, gravity; sets `ribbon.clamped`. Throws InputError for supports that contradict each other
-/// or ask for more than the strip's length.
+/// Clamps, pins, forces, gravity, obstacles; sets `ribbon.clamped`. Throws InputError for supports that contradict each
+/// other or ask for more than the strip's length.
 constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSpec& ribbon);
+
+/// Solids in the strip's way, and how it touches them.
+std::vector<constraint::Obstacle> build_obstacles(const Cell& root);
+constraint::Contact build_contact(const Cell& root, double width);
 
 /// Solver options; `last_key` is the time of the last keyframe, 0 without any.
 SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon, double last_key);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "wunderlich/scene/build.hpp"
+#include "wunderlich/scene/keyframes.hpp"
 
 namespace wunderlich::scene {
 
@@ -14,6 +15,8 @@ using constraint::LoadKey;
 using constraint::Orientation;
 using constraint::PoseKey;
 using constraint::Support;
+
+const AxisNames clamp_axes{"tangent", "normal", "[0, 0, 1]"};
 
 /// What the reader needs to know of the strip while it places things on it.
 struct Strip {
@@ -99,53 +102,6 @@ std::array<bool, 3> held_axes(const Cell& free_cell) {
   return held;
 }
 
-/// The tangent and normal as written; a frame only once both are known.
-struct Axes {
-  Vec3 tangent;
-  Vec3 normal;
-};
-
-Vec3 direction(const Cell& cell) {
-  const Vec3 v = vector(cell);
-  if (!(v.norm() > 1e-9)) fail(cell, "is (nearly) zero; a direction must be longer than 1e-9");
-  return v.normalized();
-}
-
-Quat frame_of(const Axes& axes, const Cell& cell) {
-  const double cosine = axes.tangent.dot(axes.normal);
-  if (std::abs(cosine) > 1e-6) {
-    fail(cell,
-         fmt::format("tangent and normal must be perpendicular; they stand at {:.4f} degrees (a normal that is not "
-                     "given is [0, 0, 1], or that of the keyframe before)",
-                     std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / EIGEN_PI));
-  }
-  const Vec3 d1 = (axes.normal - cosine * axes.tangent).normalized();
-  Mat3 rotation;
-  rotation << d1, axes.tangent.cross(d1), axes.tangent;
-  return Quat(rotation);
-}
-
-/// Times must increase strictly; called with the keys read so far.
-template <typename Key>
-double next_time(const Cell& keyframe, const std::vector<Key>& keys) {
-  const Cell cell = child(keyframe, "time");
-  const double time = number(cell);
-  if (!keys.empty() && !(time > keys.back().time)) {
-    fail(cell, fmt::format("{:g} does not come after the keyframe before, at {:g}; times must increase", time,
-                           keys.back().time));
-  }
-  return time;
-}
-
-void check_half_turn(const Cell& keyframe, const std::vector<PoseKey>& keys) {
-  if (keys.size() < 2) return;
-  const double angle = keys[keys.size() - 2].pose.frame.angularDistance(keys.back().pose.frame);
-  if (angle < EIGEN_PI - 1e-6) return;
-  fail(keyframe,
-       "the frame turns by half a turn from the keyframe before, so its way is not defined; use `turn` for turns "
-       "about the tangent, or a keyframe in between");
-}
-
 constraint::Motion motion_of(const Cell& cell, const Vec3& rest_position, bool with_frame) {
   constraint::Motion motion;
   PoseKey key;
@@ -154,7 +110,7 @@ constraint::Motion motion_of(const Cell& cell, const Vec3& rest_position, bool w
   Axes axes{Vec3::UnitX(), Vec3::UnitZ()};
   if (with_frame) {
     axes = {direction(child(cell, "tangent")), direction(child(cell, "normal"))};
-    key.pose.frame = frame_of(axes, cell);
+    key.pose.frame = frame_of(axes, clamp_axes, cell);
     key.turn = number(child(cell, "turn"));
   }
   const Cell keyframes = child(cell, "keyframes");
@@ -163,13 +119,13 @@ constraint::Motion motion_of(const Cell& cell, const Vec3& rest_position, bool w
     key.time = next_time(keyframe, motion.keys);
     if (const Cell c = child(keyframe, "position"); c.value != nullptr) key.pose.position = vector(c);
     if (with_frame) {
-      if (const Cell c = child(keyframe, "tangent"); c.value != nullptr) axes.tangent = direction(c);
-      if (const Cell c = child(keyframe, "normal"); c.value != nullptr) axes.normal = direction(c);
+      if (const Cell c = child(keyframe, "tangent"); c.value != nullptr) axes.d3 = direction(c);
+      if (const Cell c = child(keyframe, "normal"); c.value != nullptr) axes.d1 = direction(c);
       if (const Cell c = child(keyframe, "turn"); c.value != nullptr) key.turn = number(c);
-      key.pose.frame = frame_of(axes, keyframe);
+      key.pose.frame = frame_of(axes, clamp_axes, keyframe);
     }
     motion.keys.push_back(key);
-    check_half_turn(keyframe, motion.keys);
+    check_half_turn(keyframe, motion.keys, clamp_axes.d3);
   }
   if (motion.keys.empty()) motion.keys.push_back(key);
   return motion;
@@ -258,6 +214,8 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
     const bool at_end = load.node == 0 || load.node == ribbon.segments;
     if (turns && at_end && ribbon.closure == geometry::Closure::open) ribbon.clamped[load.node == 0 ? 0 : 1] = true;
   }
+  surroundings.obstacles = build_obstacles(root);
+  surroundings.contact = build_contact(root, ribbon.width);
   if (surroundings.supports.empty() && !moves) {
     const std::string problem = "nothing holds the strip against it; add a clamp or a pin";
     if (!surroundings.loads.empty()) fail(child(root, "forces"), problem);

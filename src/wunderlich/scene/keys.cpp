@@ -243,6 +243,7 @@ const std::vector<Key> after_solver = {
 const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all = before_solver;
+    all.insert(all.end(), obstacle_keys().begin(), obstacle_keys().end());
     all.insert(all.end(), solver_keys().begin(), solver_keys().end());
     all.insert(all.end(), after_solver.begin(), after_solver.end());
     return all;

@@ -62,6 +62,7 @@ double last_key_time(const constraint::Surroundings& surroundings) {
   double last = 0;
   for (const auto& support : surroundings.supports) last = std::max(last, end_time(support.motion));
   for (const auto& load : surroundings.loads) last = std::max(last, load.keys.back().time);
+  for (const auto& obstacle : surroundings.obstacles) last = std::max(last, end_time(obstacle.motion));
   return last;
 }
 

@@ -33,8 +33,9 @@ struct Key {
   std::string doc;
 };
 
-/// Every key, sections before their contents; and those below `solver`.
+/// Every key, sections before their contents; and those below `obstacles` and `contact`, and below `solver`.
 const std::vector<Key>& keys();
+const std::vector<Key>& obstacle_keys();
 const std::vector<Key>& solver_keys();
 
 /// The key with this pattern, or null.

@@ -48,9 +48,12 @@ Beside values outside their range:
 - two supports that hold the same node (a clamped segment holds both of its nodes; an end clamp holds the end node);
 - supports that at any keyframe stand farther apart than the strip between them is long;
 - clamps at `start` or `end` of a loop, half twists or free rulings where they mean nothing;
-- a tangent or normal of no length, or the two not perpendicular; a frame that turns by half a turn between keyframes;
+- a direction of no length; a tangent and normal, or an axis and side, that are not perpendicular; a frame that turns by
+  half a turn between keyframes;
 - keyframes whose times do not increase; a force entry without force and torque; gravity with nothing that holds the
   strip;
+- obstacles with `solver.method: two-stage`; sizes and directions that a shape does not have; `contact` without
+  `obstacles`;
 - both `width` and `aspect`, both `bending_stiffness` and `young_modulus`, both `area_density` and `mass_density`;
 - more than 2e7 segments times frames, or more than 2e7 points of the rendered surface.
 )";

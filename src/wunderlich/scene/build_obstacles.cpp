@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <limits>
+
+#include "wunderlich/math/rotation.hpp"
+#include "wunderlich/scene/build.hpp"
+#include "wunderlich/scene/keyframes.hpp"
+
+namespace wunderlich::scene {
+
+namespace {
+
+using constraint::Obstacle;
+
+const AxisNames box_axes{"axis", "side", "[1, 0, 0]"};
+
+/// Keys that only some shapes read; given with another they are a mistake worth telling.
+void check_use(const Cell& cell, const std::string& shape) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> own{
+      {"radius", {"sphere", "cylinder", "capsule"}},
+      {"length", {"cylinder", "capsule"}},
+      {"size", {"box"}},
+      {"side", {"box"}},
+      {"normal", {"plane"}},
+      {"axis", {"sphere", "cylinder", "capsule", "box"}}};
+  for (const auto& [name, shapes] : own) {
+    if (std::find(shapes.begin(), shapes.end(), shape) != shapes.end()) continue;
+    const Cell given = child(cell, name);
+    if (given.value != nullptr) fail(given, "has no effect with `shape: " + shape + "`");
+  }
+}
+
+contact::Shape shape_of(const Cell& cell, const std::string& shape) {
+  if (shape == "plane") return contact::HalfSpace{};
+  if (shape == "box") return contact::Box{0.5 * vector(child(cell, "size"))};
+  const double radius = number(child(cell, "radius"));
+  if (shape == "sphere") return contact::Sphere{radius};
+  const Cell length = child(cell, "length");
+  const bool endless = shape == "cylinder" && length.value == nullptr;
+  const double half_length = endless ? std::numeric_limits<double>::infinity() : 0.5 * number(length);
+  if (shape == "cylinder") return contact::Cylinder{radius, half_length};
+  return contact::Capsule{radius, half_length};
+}
+
+/// How a body stands. Starts with the table's defaults.
+struct Stand {
+  Axes axes{Vec3::UnitZ(), Vec3::UnitX()};
+  Quat frame = Quat::Identity();
+};
+
+std::string axis_name(const std::string& shape) { return shape == "plane" ? "normal" : "axis"; }
+
+/// Turns a body to the directions that it or one of its keyframes gives; others stay as they were.
+void turn_to(const Cell& cell, const std::string& shape, Stand& stand) {
+  check_use(cell, shape);
+  const Vec3 before = stand.axes.d3;
+  if (const Cell c = child(cell, axis_name(shape)); c.value != nullptr) stand.axes.d3 = direction(c);
+  if (const Cell c = child(cell, "side"); c.value != nullptr) stand.axes.d1 = direction(c);
+  // A round body has no sides to tell: it goes the shortest way, without a turn about its axis.
+  stand.frame = shape == "box" ? frame_of(stand.axes, box_axes, cell)
+                               : math::shortest_rotation(before, stand.axes.d3) * stand.frame;
+}
+
+constraint::Motion motion_of(const Cell& cell, const std::string& shape) {
+  constraint::Motion motion;
+  Stand stand;
+  turn_to(cell, shape, stand);
+  constraint::PoseKey key;
+  key.pose = {vector(child(cell, "position")), stand.frame};
+  key.turn = number(child(cell, "turn"));
+  const Cell keyframes = child(cell, "keyframes");
+  for (std::size_t i = 0; i < count(keyframes); ++i) {
+    const Cell keyframe = element(keyframes, i);
+    key.time = next_time(keyframe, motion.keys);
+    if (const Cell c = child(keyframe, "position"); c.value != nullptr) key.pose.position = vector(c);
+    if (const Cell c = child(keyframe, "turn"); c.value != nullptr) key.turn = number(c);
+    turn_to(keyframe, shape, stand);
+    key.pose.frame = stand.frame;
+    motion.keys.push_back(key);
+    check_half_turn(keyframe, motion.keys, axis_name(shape));
+  }
+  if (motion.keys.empty()) motion.keys.push_back(key);
+  return motion;
+}
+
+Obstacle obstacle_of(const Cell& cell, const Cell& contact) {
+  const std::string shape = text(child(cell, "shape"));
+  Obstacle obstacle;
+  obstacle.motion = motion_of(cell, shape);
+  obstacle.shape = shape_of(cell, shape);
+  const Cell friction = child(cell, "friction");
+  obstacle.friction = number(friction.value != nullptr ? friction : child(contact, "friction"));
+  return obstacle;
+}
+
+}  // namespace
+
+std::vector<Obstacle> build_obstacles(const Cell& root) {
+  const Cell list = child(root, "obstacles");
+  if (count(list) > 0 && method_of(root) == Method::two_stage) {
+    fail(list, "not with `solver.method: two-stage`; use `implicit`");
+  }
+  std::vector<Obstacle> obstacles;
+  for (std::size_t i = 0; i < count(list); ++i) {
+    obstacles.push_back(obstacle_of(element(list, i), child(root, "contact")));
+  }
+  return obstacles;
+}
+
+constraint::Contact build_contact(const Cell& root, double width) {
+  const Cell cell = child(root, "contact");
+  if (cell.value != nullptr && count(child(root, "obstacles")) == 0) fail(cell, "has no effect without `obstacles`");
+  const Cell distance = child(cell, "distance");
+  return {distance.value != nullptr ? number(distance) : width / 30, number(child(cell, "thickness"))};
+}
+
+}  // namespace wunderlich::scene
