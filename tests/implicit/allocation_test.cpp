@@ -84,6 +84,10 @@ TEST(Allocation, NoneInStepsOfASwing) {
     m.options.drag_normal = 1;
     start(m);
     expect_none(1e-3, m);
+    m.options.viscosity = m.options.drag_normal = 0;
+    m.options.conserve = true;
+    start(m);
+    expect_none(1e-3, m);
   }
 }
 

@@ -78,7 +78,8 @@ class Motion(ProgramTest):
 
     def test_interrupted_motion_goes_on_bit_for_bit(self):
         fine = [*IMPLICIT, "--set", "solver.time_step=1e-4", "--set", "solver.duration=4"]
-        for arguments in ([*SWING, "--set", "ribbon.segments=40"], LOOP, [*SWING, *fine], [*BAND, *fine]):
+        whip = ["whip", "--formats", "none", "--set", "solver.conserve=true", "--set", "solver.duration=60"]
+        for arguments in ([*SWING, "--set", "ribbon.segments=40"], LOOP, [*SWING, *fine], [*BAND, *fine], whip):
             with self.subTest(arguments=arguments):
                 self.interrupt(arguments)
                 self.expect(0, "run", arguments[0], "--out", "run", "--formats", "none", "--resume")

@@ -309,7 +309,8 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     ++report.iterations;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
-    const bool inertial = options.inertial && shift == 0 && find_inertial_direction(ribbon, work, report);
+    const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
+    if (inertial) shift = 0;
     if (!inertial && !find_direction(ribbon, conservative, work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;

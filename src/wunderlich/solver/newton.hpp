@@ -13,7 +13,7 @@ struct NewtonOptions {
   double max_turn = 0.6;  ///< largest change of a fold angle in one iteration [rad]
   bool inertial = false;  ///< masses tie the strip to where it was going: terms that carry forces are left out where
                           ///< they would make the Hessian indefinite, and a step below the tolerance is taken and the
-                          ///< last one
+                          ///< last one; whether it ends in a minimum or a saddle is not asked
 };
 
 enum class NewtonOutcome {
