@@ -82,8 +82,9 @@ class ImplicitMover : public Mover {
   }
   void add_warnings(Summary& summary) const override {
     if (impulses_ == 0) return;
-    summary.warnings.push_back("impulses were taken up without a rebound, in " + text_of(impulses_) +
-                               " steps: a support starts at once, or the strip comes taut or folds within a step");
+    summary.warnings.push_back(
+        "impulses were taken up without a rebound, in " + text_of(impulses_) +
+        " steps: a support starts at once, or the strip comes taut, folds or hits a solid within a step");
   }
 
   std::vector<double> pack() const override {

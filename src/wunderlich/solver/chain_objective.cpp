@@ -224,6 +224,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   if (ribbon.hinge_length[0] == 0) still_joint(system.links[0]);
   system.rows.clear();
   system.pose_terms.clear();
+  system.surfaces.clear();
   add_ties(ribbon, problem, chain, k, system);
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);

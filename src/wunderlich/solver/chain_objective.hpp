@@ -9,6 +9,7 @@
 #include "wunderlich/energy/model.hpp"
 #include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/math/chain_sweep.hpp"
+#include "wunderlich/solver/chain_contact.hpp"
 
 namespace wunderlich::solver {
 
@@ -51,6 +52,7 @@ struct ChainProblem {
   std::vector<FacetTie> facets;             ///< (segments) or none
   double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
   const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0
+  ContactProblem contact;                   ///< solids that the strip stays out of
   std::vector<Hold> holds;                  ///< sorted by decreasing node
   bool closed = false;                      ///< the loop's closure is a constraint
   std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
@@ -65,8 +67,9 @@ struct ObjectiveValue {
   double elastic = 0;
   double barrier = 0;
   double ties = 0;
-  double loads = 0;  ///< minus their work since the reference
-  double total() const { return elastic + barrier + ties + loads; }
+  double loads = 0;    ///< minus their work since the reference
+  double contact = 0;  ///< of its barrier; `objective` leaves it out
+  double total() const { return elastic + barrier + ties + loads + contact; }
 };
 
 /// `reference`: frames that torques are measured from (a torque has no potential; its work is taken to first

@@ -142,6 +142,7 @@ void problem_at(const PathProblem& path, const PathState& state, double t, Chain
     }
   }
   add_loads(path, state, t, problem);
+  place_solids(ribbon, path.surroundings, t, problem.contact);
 }
 
 }  // namespace wunderlich::solver

@@ -166,10 +166,32 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
   return false;
 }
 
+/// Value of the iterate, with contact.
+void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chain& current, NewtonWorkspace& work) {
+  work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
+  if (problem.contact.empty()) return;
+  find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
+  work.value.contact = contact_energy(ribbon, problem.contact, work.contacts);
+}
+
+/// Kinematics and value of the trial; infinite where something would be in its way.
+void value_trial(const Iterate& at) {
+  NewtonWorkspace& work = at.work;
+  geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
+  work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
+  const ContactProblem& contact = at.problem.contact;
+  if (contact.empty()) return;
+  find_points(at.ribbon, contact, work.trial, work.trial_kinematics, work.trial_contacts);
+  work.trial_value.contact = may_go(contact, work.contacts, work.trial_contacts)
+                                 ? contact_energy(at.ribbon, contact, work.trial_contacts)
+                                 : std::numeric_limits<double>::infinity();
+}
+
 /// The trial becomes the iterate; loads are counted from here.
 void move_on(Chain& current, NewtonWorkspace& work) {
   std::swap(current, work.trial);
   std::swap(work.kinematics, work.trial_kinematics);
+  std::swap(work.contacts, work.trial_contacts);
   work.value = work.trial_value;
   work.value.loads = 0;
 }
@@ -178,9 +200,8 @@ void move_on(Chain& current, NewtonWorkspace& work) {
 bool take_step(const Iterate& at, Chain& current, double scale, NewtonReport& report) {
   NewtonWorkspace& work = at.work;
   apply_step(current, work.step, scale, work.trial);
-  geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
+  value_trial(at);
   ++report.evaluations;
-  work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
   if (!std::isfinite(work.trial_value.total())) return false;
   move_on(current, work);
   return true;
@@ -200,9 +221,8 @@ bool line_search(const Iterate& at, const Chain& chain, double start, double slo
   const double rounding = 1e-13 * (std::abs(start) + std::abs(slope));
   for (double scale = limit; scale > 1e-10; scale *= 0.5) {
     apply_step(chain, work.step, scale, work.trial);
-    geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
+    value_trial(at);
     ++report.evaluations;
-    work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
     constraint_residuals(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.trial_residuals);
     const double merit = at.merit(work.trial_value, work.trial_residuals);
     if (std::isfinite(merit) && merit <= start + 1e-4 * scale * slope + rounding) return true;
@@ -296,7 +316,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   double shift = 0;
   int polished = 0;
   geometry::forward_kinematics(ribbon, current, work.kinematics);
-  work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
+  value_iterate(ribbon, problem, current, work);
   const auto accept = [&] {
     report.outcome = NewtonOutcome::converged;
     report.value = work.value;
@@ -308,6 +328,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.system);
+    add_contact(ribbon, problem.contact, current, work.kinematics, work.contacts, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
     if (inertial) shift = 0;
@@ -350,7 +371,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     if (kind == Stationary::saddle && report.kicks < kMaxKicks) {
       ++report.kicks;
       if (softest_mode(ribbon, work)) kick(ribbon, current, work);
-      work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
+      value_iterate(ribbon, problem, current, work);
       continue;
     }
     if (kind == Stationary::saddle || !line_search(at, current, merit, slope, limit, report)) {

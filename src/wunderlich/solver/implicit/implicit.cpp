@@ -70,6 +70,30 @@ void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
   chain.base.frame = math::exp_map(share * turn) * now.base.frame;
 }
 
+/// Where Newton's method may start: the prediction if nothing is in its way, or else where the strip is. False if that
+/// is where a moving solid goes.
+bool start_clear(const PathProblem& path, const State& state, Workspace& work) {
+  const Ribbon& ribbon = path.ribbon;
+  const ContactProblem& contact = work.problem.contact;
+  if (contact.empty()) return true;
+  place_solids(ribbon, path.surroundings, state.path.t, work.solids);
+  geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
+  find_points(ribbon, work.solids, state.path.chain, work.kinematics, work.before);
+  const auto is_clear = [&](const Chain& chain) {
+    geometry::forward_kinematics(ribbon, chain, work.kinematics);
+    find_points(ribbon, contact, chain, work.kinematics, work.predicted);
+    return may_go(contact, work.before, work.predicted);
+  };
+  if (is_clear(work.trial)) return true;
+  const Pose held = work.trial.base;
+  work.trial = state.path.chain;
+  for (int c = 0; c < 3; ++c) {
+    if (work.problem.base_fixed[static_cast<std::size_t>(c)]) work.trial.base.position[c] = held.position[c];
+  }
+  if (work.problem.base_fixed[3]) work.trial.base.frame = held.frame;
+  return is_clear(work.trial);
+}
+
 /// Supports, loads and inertia of a step that ends at t1; `chain` gets its prescribed base.
 void set_problem(const PathProblem& path, const Options& options, const Scheme& scheme, double t1, const State& state,
                  Chain& chain, ChainProblem& problem) {
@@ -209,7 +233,7 @@ double probe_step(const PathProblem& path, const State& state) {
 /// A strip that may float where it likes: how far it floats in a step is a linear equation, which Newton's last step
 /// solves at the iterate before. Solved here at the last one, so that linear momentum is kept to rounding.
 void float_freely(const Ribbon& ribbon, const ChainProblem& problem, Chain& chain, geometry::Kinematics& k) {
-  if (!problem.holds.empty() || !problem.loads.empty()) return;
+  if (!problem.holds.empty() || !problem.loads.empty() || !problem.contact.empty()) return;
   Vec3 force = Vec3::Zero();
   double stiffness = 0;
   for (std::size_t i = 0; i < problem.tie.size(); ++i) {
@@ -264,6 +288,10 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   geometry::forward_kinematics(path.ribbon, state.path.chain, work.kinematics);
   const ObjectiveValue now = objective(path.ribbon, work.problem, state.path.chain, work.kinematics, work.kinematics);
   state.elastic = now.elastic + now.barrier;
+  if (!work.problem.contact.empty()) {
+    find_points(path.ribbon, work.problem.contact, state.path.chain, work.kinematics, work.before);
+    state.elastic += contact_energy(path.ribbon, work.problem.contact, work.before);
+  }
   state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   state.base_reaction.setZero();
   work.multipliers.assign(row_count(work.problem), 0.0);
@@ -315,6 +343,11 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     work.start.base = work.trial.base;
     if (!work.multipliers.empty()) geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
     constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
+    if (!start_clear(path, state, work)) {
+      state.level = level;
+      report.failure = "a solid runs into the strip within a step of " + std::to_string(h) + " s";
+      return report;
+    }
     report.newton = minimise(ribbon, work.problem, newton_options(options), work.trial, work.multipliers, work.newton);
     report.iterations += report.newton.iterations;
     if (!report.newton.converged()) {
@@ -327,7 +360,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     work.points = state.points;
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
-    const double elastic1 = report.newton.value.elastic + report.newton.value.barrier;
+    const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
     growth = elastic1 - state.elastic + kinetic1 - kinetic0 - load_work(work.problem, state.points.x, work.x) -
              support_work(work.problem, scheme, state, work.start, work, work.residuals);
     const double peak = std::max(state.peak, kinetic1);

@@ -32,7 +32,7 @@ struct State {
   double last_step = 0;                           ///< [s]; 0 before the first, and after a release or an impulse
   int level = 0;                                  ///< of damping: 0 ... kDampingLevels - 1
   int calm = 0;                                   ///< steps since it was raised
-  double elastic = 0;                             ///< energy with the barrier, now [J]
+  double elastic = 0;                             ///< energy with all barriers, now [J]
   double peak = 0;                                ///< largest kinetic energy so far [J]
   double missing = 0;                             ///< `conserve`: energy that is still to be put right [J]
   Momentum momentum;                              ///< `conserve`: at the start

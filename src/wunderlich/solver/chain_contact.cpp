@@ -1,0 +1,191 @@
+#include "wunderlich/solver/chain_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::solver {
+
+using geometry::Chain;
+using geometry::Kinematics;
+using geometry::Ribbon;
+
+namespace {
+
+constexpr double kStiffness = 100;   // barrier over weight or bending: light contact, few iterations
+constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
+constexpr int kMostCells = 16;       // across a strip, and along a segment
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Barrier {
+  double value, first, second;
+};
+
+/// -(d - e)^2 ln(d/e) for d < e.   @eq Li2020:6
+Barrier barrier(double d, double e) {
+  if (d >= e) return {0, 0, 0};
+  if (!(d > 0)) return {kInfinity, 0, 0};
+  const double log = std::log(d / e), less = d - e;
+  return {-less * less * log, -2 * less * log - less * less / d, -2 * log - 4 * less / d + less * less / (d * d)};
+}
+
+double smallest_radius(const contact::Shape& shape) {
+  if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return sphere->radius;
+  if (const auto* cylinder = std::get_if<contact::Cylinder>(&shape)) return cylinder->radius;
+  if (const auto* capsule = std::get_if<contact::Capsule>(&shape)) return capsule->radius;
+  return std::holds_alternative<contact::Box>(shape) ? 0 : kInfinity;
+}
+
+/// Where a point is on its segment, and the area it stands for.
+struct Station {
+  double share;  ///< f
+  double v;      ///< [m]
+  double area;   ///< [m^2]
+};
+
+/// Trapezoidal: corners and rims are among the points.
+Station station(const Ribbon& ribbon, const ContactProblem& problem, std::size_t segment, int i, int k) {
+  const double f = static_cast<double>(i) / problem.along, g = static_cast<double>(k) / problem.across;
+  const double ends = (i == 0 || i == problem.along ? 0.5 : 1) * (k == 0 || k == problem.across ? 0.5 : 1);
+  const double cell = ribbon.rest_length[segment] * ribbon.width / (problem.along * problem.across);
+  return {f, (g - 0.5) * ribbon.width, ends * cell};
+}
+
+/// From the segment's far node to the point.
+Vec3 arm(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t s, const Station& at) {
+  const double eta = (1 - at.share) * chain.eta[s] + at.share * chain.eta[s + 1];
+  return ((at.share - 1) * ribbon.rest_length[s] + at.v * eta) * k.frame[s].col(2) + at.v * k.frame[s].col(1);
+}
+
+/// Calls visit(segment, station, index of the point) for every point of one solid, segments in decreasing order.
+template <class Visit>
+void visit_points(const Ribbon& ribbon, const ContactProblem& problem, std::size_t solid, const Visit& visit) {
+  const auto n = static_cast<std::size_t>(ribbon.segments);
+  const auto each = static_cast<std::size_t>((problem.along + 1) * (problem.across + 1));
+  for (std::size_t s = n; s-- > 0;) {
+    std::size_t index = (solid * n + s) * each;
+    for (int i = 0; i <= problem.along; ++i) {
+      for (int k = 0; k <= problem.across; ++k) visit(s, station(ribbon, problem, s, i, k), index++);
+    }
+  }
+}
+
+/// The force that the barrier's first derivative is, and both parts of the Hessian, of one point.
+void add_point(const Station& at, const Vec3& arm, const Vec3& slant, const Vec3& normal, const Mat3& curvature,
+               const Barrier& b, math::SurfaceTerm& term) {
+  Eigen::Matrix<double, 3, 8> move;
+  move << Mat3::Identity(), -math::skew(arm), (1 - at.share) * slant, at.share * slant;
+  const math::Vec8 along = move.transpose() * normal;
+  const Vec3 force = b.first * normal;
+  term.gradient += b.first * along;
+  term.hessian += b.second * along * along.transpose();
+  term.geometric += b.first * move.transpose() * curvature * move;
+  term.geometric.block<3, 3>(3, 3) +=
+      0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
+  const Vec3 twist = slant.cross(force);
+  for (int c = 0; c < 2; ++c) {
+    const Vec3 part = (c == 0 ? 1 - at.share : at.share) * twist;
+    term.geometric.block<3, 1>(3, 6 + c) += part;
+    term.geometric.block<1, 3>(6 + c, 3) += part.transpose();
+  }
+}
+
+}  // namespace
+
+void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
+                  ContactProblem& problem) {
+  problem.solids.resize(surroundings.obstacles.size());
+  if (problem.empty()) return;
+  double radius = kInfinity;
+  for (std::size_t i = 0; i < problem.solids.size(); ++i) {
+    const constraint::Obstacle& obstacle = surroundings.obstacles[i];
+    problem.solids[i] = {obstacle.shape, constraint::pose_at(obstacle.motion, t)};
+    radius = std::min(radius, smallest_radius(obstacle.shape));
+  }
+  const double w = ribbon.width, d = surroundings.contact.distance;
+  problem.distance = d;
+  problem.thickness = surroundings.contact.thickness;
+  const double load = ribbon.area_density * surroundings.gravity.norm();
+  problem.stiffness = kStiffness * std::max(load, ribbon.bending_stiffness / (w * w * w)) / d;
+  // A chord of length c of a circle is c^2/(8 R) off it: a quarter of the distance is left for it.
+  const double cell = std::sqrt(2 * radius * d);
+  const auto cells = [&](double size) {
+    return static_cast<int>(std::clamp(std::ceil(size / cell), 1.0, static_cast<double>(kMostCells)));
+  };
+  problem.across = cells(w);
+  problem.along = cells(*std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end()));
+}
+
+void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
+                 std::vector<ContactPoint>& points) {
+  const auto n = static_cast<std::size_t>(ribbon.segments);
+  points.resize(problem.solids.size() * n * static_cast<std::size_t>((problem.along + 1) * (problem.across + 1)));
+  for (std::size_t i = 0; i < problem.solids.size(); ++i) {
+    const auto& [shape, pose] = problem.solids[i];
+    const Pose own;
+    const Mat3 to_own = pose.frame.conjugate().toRotationMatrix();
+    visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
+      const Vec3 local = to_own * (k.r[s + 1] + arm(ribbon, chain, k, s, at) - pose.position);
+      const contact::Distance d = contact::distance(shape, own, local);
+      points[index] = {local, d.normal, d.value - problem.thickness, d.hessian};
+    });
+  }
+}
+
+double contact_energy(const Ribbon& ribbon, const ContactProblem& problem, const std::vector<ContactPoint>& points) {
+  double sum = 0;
+  for (std::size_t i = 0; i < problem.solids.size(); ++i) {
+    visit_points(ribbon, problem, i, [&](std::size_t, const Station& at, std::size_t index) {
+      sum += at.area * barrier(points[index].gap, problem.distance).value;
+    });
+  }
+  return problem.stiffness * sum;
+}
+
+bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from, const std::vector<ContactPoint>& to) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const ContactPoint &a = from[i], &b = to[i];
+    if (!(b.gap > 0 && b.gap >= kLeastShare * std::min(a.gap, problem.distance))) return false;
+    // The distance to a convex solid is convex along the way: above its tangents at both ends.
+    const Vec3 way = b.at - a.at;
+    const double down = a.normal.dot(way), up = b.normal.dot(way);
+    if (down >= 0 || up <= 0) continue;
+    const double lowest = a.gap + down * (a.gap - b.gap + up) / (up - down);
+    if (!(lowest > 0)) return false;
+  }
+  return true;
+}
+
+double smallest_gap(const std::vector<ContactPoint>& points) {
+  double least = kInfinity;
+  for (const ContactPoint& point : points) least = std::min(least, point.gap);
+  return least;
+}
+
+void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
+                 const std::vector<ContactPoint>& points, math::ChainSystem& system) {
+  const auto touches = [&](std::size_t index) { return points[index].gap < problem.distance; };
+  for (std::size_t i = 0; i < problem.solids.size(); ++i) {
+    const Mat3 to_space = problem.solids[i].pose.frame.toRotationMatrix();
+    visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
+      if (!touches(index)) return;
+      const auto node = static_cast<int>(s);
+      const auto later = [](const math::SurfaceTerm& a, int b) { return a.node > b; };
+      auto place = std::lower_bound(system.surfaces.begin(), system.surfaces.end(), node, later);
+      if (place == system.surfaces.end() || place->node != node) {
+        math::SurfaceTerm term;
+        term.node = node;
+        place = system.surfaces.insert(place, term);
+      }
+      Barrier b = barrier(points[index].gap, problem.distance);
+      const double weight = problem.stiffness * at.area;
+      b = {weight * b.value, weight * b.first, weight * b.second};
+      add_point(at, arm(ribbon, chain, k, s, at), at.v * k.frame[s].col(2), to_space * points[index].normal,
+                to_space * points[index].hessian * to_space.transpose(), b, *place);
+    });
+  }
+}
+
+}  // namespace wunderlich::solver

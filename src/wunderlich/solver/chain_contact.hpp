@@ -1,0 +1,60 @@
+/// Contact of a chain with solids: points of its surface are kept out by a barrier that begins at a small distance.
+///
+/// A point lies at a share f of its segment and at v across it, r + (f - 1) l d3 + v (d2 + eta d3) from the segment's
+/// far node, eta linear between the rulings at both ends.   @eq Shen2015:1 @eq Li2020:4
+#pragma once
+
+#include "wunderlich/constraint/support.hpp"
+#include "wunderlich/geometry/chain.hpp"
+#include "wunderlich/math/chain_sweep.hpp"
+
+namespace wunderlich::solver {
+
+/// Solids at one time, and the points of each segment that feel them.
+struct ContactProblem {
+  struct Solid {
+    contact::Shape shape;
+    Pose pose;
+  };
+  std::vector<Solid> solids;
+  double distance = 0;   ///< at which forces begin [m]
+  double thickness = 0;  ///< that stays between surface and solid [m]
+  double stiffness = 0;  ///< of the barrier, per area [N/m^3]
+  int along = 1;         ///< cells of points along a segment
+  int across = 1;        ///< and across it
+  bool empty() const { return solids.empty(); }
+};
+
+/// One point of the strip beside one solid, in the solid's own frame.
+struct ContactPoint {
+  Vec3 at;       ///< [m]
+  Vec3 normal;   ///< of the solid there, outward
+  double gap;    ///< distance beyond the thickness [m]
+  Mat3 hessian;  ///< of the distance
+};
+
+/// The surroundings' solids at a time, with points dense enough that no solid's curve cuts a facet between them.
+void place_solids(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
+                  ContactProblem& problem);
+
+/// All points of all solids; nothing else of the chain is looked at by what follows.
+void find_points(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,
+                 const geometry::Kinematics& kinematics, std::vector<ContactPoint>& points);
+
+/// Energy of the barrier [J]; infinite where a point touches.
+double contact_energy(const geometry::Ribbon& ribbon, const ContactProblem& problem,
+                      const std::vector<ContactPoint>& points);
+
+/// May the points go from one place to the other in straight lines? Not if one would enter a solid (they are convex) or
+/// lose more than nine tenths of its gap within the barrier's distance.
+bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from, const std::vector<ContactPoint>& to);
+
+/// Smallest gap [m]; infinite without solids.
+double smallest_gap(const std::vector<ContactPoint>& points);
+
+/// Derivatives of the barrier, as terms of the sweep. `points` are those of the chain.
+void add_contact(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,
+                 const geometry::Kinematics& kinematics, const std::vector<ContactPoint>& points,
+                 math::ChainSystem& system);
+
+}  // namespace wunderlich::solver
