@@ -96,6 +96,36 @@ void add_holds(const Kinematics& k, Random& random, ChainProblem& problem) {
   problem.holds = {end, turn, pin};
 }
 
+/// Solids all round, within whose barriers most of the strip is.
+void add_solids(const Chain& chain, ChainProblem& problem) {
+  const auto at = [&](double x, double y, double z) {
+    return Pose{chain.base.position + Vec3(x, y, z), math::exp_map(Vec3(0.3, -1.1, 0.4))};
+  };
+  solver::ContactProblem& contact = problem.contact;
+  contact.solids = {{contact::HalfSpace{}, {chain.base.position - Vec3(0, 0, 4), Quat::Identity()}},
+                    {contact::Sphere{1.2}, at(4, 1, 0)},
+                    {contact::Capsule{0.7, 3}, at(-4, 0, 1)}};
+  contact.distance = 5;
+  contact.thickness = 0.1;
+  contact.stiffness = 3;
+  contact.along = 2;
+  contact.across = 3;
+}
+
+double contact_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k) {
+  std::vector<solver::ContactPoint> points;
+  find_points(ribbon, problem.contact, chain, k, points);
+  return contact_energy(ribbon, problem.contact, points);
+}
+
+void linearise_all(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
+                   const std::vector<double>& multipliers, math::ChainSystem& system) {
+  linearise(ribbon, problem, chain, k, multipliers, system);
+  std::vector<solver::ContactPoint> points;
+  find_points(ribbon, problem.contact, chain, k, points);
+  add_contact(ribbon, problem.contact, chain, k, points, system);
+}
+
 Chain moved(const Chain& chain, const VectorXd& x) {
   Chain out = chain;
   out.base.position += x.head<3>();
@@ -125,7 +155,7 @@ void expect_gradient(const Ribbon& ribbon, const ChainProblem& problem, const Ch
   math::ChainSystem system;
   math::ChainWorkspace work;
   math::ChainStep step;
-  linearise(ribbon, problem, chain, start, multipliers, system);
+  linearise_all(ribbon, problem, chain, start, multipliers, system);
   ASSERT_TRUE(chain_step(system, work, step));
   const VectorXd d = random_direction(ribbon, random);
   double slope = work.base_gradient.dot(d.head<6>());
@@ -138,7 +168,7 @@ void expect_gradient(const Ribbon& ribbon, const ChainProblem& problem, const Ch
     geometry::forward_kinematics(ribbon, at, k);
     std::vector<double> residuals;
     constraint_residuals(ribbon, problem, at, k, residuals);
-    double sum = objective(ribbon, problem, at, k, start).total();
+    double sum = objective(ribbon, problem, at, k, start).total() + contact_value(ribbon, problem, at, k);
     for (std::size_t i = 0; i < residuals.size(); ++i) sum += multipliers[i] * residuals[i];
     return VectorXd::Constant(1, sum);
   };
@@ -156,6 +186,10 @@ TEST(SweepGradient, IsTheSlopeOfTheObjective) {
         ChainProblem problem = random_problem(ribbon, {elastic, 3, strain}, random);
         const Chain before = random_chain(ribbon, random);
         add_viscosity(before, problem);
+        add_solids(chain, problem);
+        Kinematics here;
+        geometry::forward_kinematics(ribbon, chain, here);
+        EXPECT_GT(contact_value(ribbon, problem, chain, here), 0);
         expect_gradient(ribbon, problem, chain, {}, random);
         Kinematics k;
         geometry::forward_kinematics(ribbon, chain, k);
@@ -209,6 +243,7 @@ TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
     const Chain chain = random_chain(ribbon, random), before = random_chain(ribbon, random);
     ChainProblem problem = random_problem(ribbon, {energy::Elastic::wunderlich, 3, strain}, random);
     add_viscosity(before, problem);
+    add_solids(chain, problem);
     problem.loads.clear();
     problem.base_fixed.fill(true);
     math::ChainSystem system;
@@ -217,7 +252,7 @@ TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
     const auto gradient = [&](const Chain& at) {
       Kinematics k;
       geometry::forward_kinematics(ribbon, at, k);
-      linearise(ribbon, problem, at, k, {}, system);
+      linearise_all(ribbon, problem, at, k, {}, system);
       solver::use_torsion_chart(ribbon, at, system);
       EXPECT_TRUE(chain_step(system, work, step));
       VectorXd all(2 * ribbon.node_count());

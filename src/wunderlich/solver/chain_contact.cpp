@@ -72,11 +72,18 @@ void visit_points(const Ribbon& ribbon, const ContactProblem& problem, std::size
   }
 }
 
+/// How a point moves with its facet.
+struct Lever {
+  Vec3 arm;       ///< from the segment's far node [m]
+  Vec3 slant[2];  ///< with eta at the segment's start and end [m]
+};
+
 /// The force that the barrier's first derivative is, and both parts of the Hessian, of one point.
-void add_point(const Station& at, const Vec3& arm, const Vec3& slant, const Vec3& normal, const Mat3& curvature,
-               const Barrier& b, math::SurfaceTerm& term) {
+void add_point(const Lever& lever, const Vec3& normal, const Mat3& curvature, const Barrier& b,
+               math::SurfaceTerm& term) {
+  const Vec3& arm = lever.arm;
   Eigen::Matrix<double, 3, 8> move;
-  move << Mat3::Identity(), -math::skew(arm), (1 - at.share) * slant, at.share * slant;
+  move << Mat3::Identity(), -math::skew(arm), lever.slant[0], lever.slant[1];
   const math::Vec8 along = move.transpose() * normal;
   const Vec3 force = b.first * normal;
   term.gradient += b.first * along;
@@ -84,9 +91,8 @@ void add_point(const Station& at, const Vec3& arm, const Vec3& slant, const Vec3
   term.geometric += b.first * move.transpose() * curvature * move;
   term.geometric.block<3, 3>(3, 3) +=
       0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
-  const Vec3 twist = slant.cross(force);
   for (int c = 0; c < 2; ++c) {
-    const Vec3 part = (c == 0 ? 1 - at.share : at.share) * twist;
+    const Vec3 part = lever.slant[c].cross(force);
     term.geometric.block<3, 1>(3, 6 + c) += part;
     term.geometric.block<1, 3>(6 + c, 3) += part.transpose();
   }
@@ -109,13 +115,17 @@ void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surround
   problem.thickness = surroundings.contact.thickness;
   const double load = ribbon.area_density * surroundings.gravity.norm();
   problem.stiffness = kStiffness * std::max(load, ribbon.bending_stiffness / (w * w * w)) / d;
-  // A chord of length c of a circle is c^2/(8 R) off it: a quarter of the distance is left for it.
-  const double cell = std::sqrt(2 * radius * d);
+  // Points that are c apart and c^2/(8 R) off a solid of radius R leave it room between them. Cells lean by up to 45
+  // degrees, so that their diagonals' squares are up to four of their sides'. A quarter of the distance is for that.
+  const double cell = std::sqrt(0.5 * radius * d);
   const auto cells = [&](double size) {
     return static_cast<int>(std::clamp(std::ceil(size / cell), 1.0, static_cast<double>(kMostCells)));
   };
+  const double longest = *std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end());
   problem.across = cells(w);
-  problem.along = cells(*std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end()));
+  problem.along = cells(longest);
+  const double side = std::max(w / problem.across, longest / problem.along);
+  problem.margin = radius > 0 ? std::min(0.5 * side * side / radius, d) : 0;
 }
 
 void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
@@ -129,7 +139,7 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
     visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
       const Vec3 local = to_own * (k.r[s + 1] + arm(ribbon, chain, k, s, at) - pose.position);
       const contact::Distance d = contact::distance(shape, own, local);
-      points[index] = {local, d.normal, d.value - problem.thickness, d.hessian};
+      points[index] = {local, d.normal, d.value - problem.thickness - problem.margin, d.hessian};
     });
   }
 }
@@ -164,6 +174,26 @@ double smallest_gap(const std::vector<ContactPoint>& points) {
   return least;
 }
 
+double solid_work(const Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& before,
+                  const ContactProblem& to, const std::vector<ContactPoint>& after, double late) {
+  double work = 0;
+  for (std::size_t i = 0; i < to.solids.size(); ++i) {
+    const Pose &pose0 = from.solids[i].pose, &pose1 = to.solids[i].pose;
+    if (pose0.position == pose1.position && pose0.frame.coeffs() == pose1.frame.coeffs()) continue;
+    visit_points(ribbon, to, i, [&](std::size_t, const Station& at, std::size_t index) {
+      const auto add = [&](const ContactPoint& point, const Pose& pose, double share) {
+        if (point.gap >= to.distance) return;
+        const Vec3 way = pose1.position + pose1.frame * point.at - pose0.position - pose0.frame * point.at;
+        const double force = -to.stiffness * at.area * barrier(point.gap, to.distance).first;
+        work += share * force * way.dot(pose.frame * point.normal);
+      };
+      add(before[index], pose0, 1 - late);
+      add(after[index], pose1, late);
+    });
+  }
+  return work;
+}
+
 void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
                  const std::vector<ContactPoint>& points, math::ChainSystem& system) {
   const auto touches = [&](std::size_t index) { return points[index].gap < problem.distance; };
@@ -182,8 +212,11 @@ void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chai
       Barrier b = barrier(points[index].gap, problem.distance);
       const double weight = problem.stiffness * at.area;
       b = {weight * b.value, weight * b.first, weight * b.second};
-      add_point(at, arm(ribbon, chain, k, s, at), at.v * k.frame[s].col(2), to_space * points[index].normal,
-                to_space * points[index].hessian * to_space.transpose(), b, *place);
+      Lever lever{arm(ribbon, chain, k, s, at), {Vec3::Zero(), Vec3::Zero()}};
+      if (geometry::eta_is_free(ribbon, node)) lever.slant[0] = (1 - at.share) * at.v * k.frame[s].col(2);
+      if (geometry::eta_is_free(ribbon, node + 1)) lever.slant[1] = at.share * at.v * k.frame[s].col(2);
+      add_point(lever, to_space * points[index].normal, to_space * points[index].hessian * to_space.transpose(), b,
+                *place);
     });
   }
 }

@@ -19,6 +19,7 @@ struct ContactProblem {
   std::vector<Solid> solids;
   double distance = 0;   ///< at which forces begin [m]
   double thickness = 0;  ///< that stays between surface and solid [m]
+  double margin = 0;     ///< that points keep so that facets between them stay out [m]
   double stiffness = 0;  ///< of the barrier, per area [N/m^3]
   int along = 1;         ///< cells of points along a segment
   int across = 1;        ///< and across it
@@ -29,7 +30,7 @@ struct ContactProblem {
 struct ContactPoint {
   Vec3 at;       ///< [m]
   Vec3 normal;   ///< of the solid there, outward
-  double gap;    ///< distance beyond the thickness [m]
+  double gap;    ///< distance beyond thickness and margin [m]
   Mat3 hessian;  ///< of the distance
 };
 
@@ -51,6 +52,11 @@ bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from
 
 /// Smallest gap [m]; infinite without solids.
 double smallest_gap(const std::vector<ContactPoint>& points);
+
+/// Work that moving solids do on the strip when they go from one place to the other while the strip's points are
+/// `before`, then `after`: with the force before in the share 1 - `late`, after in the share `late` [J].
+double solid_work(const geometry::Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& before,
+                  const ContactProblem& to, const std::vector<ContactPoint>& after, double late);
 
 /// Derivatives of the barrier, as terms of the sweep. `points` are those of the chain.
 void add_contact(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,

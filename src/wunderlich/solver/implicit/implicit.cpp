@@ -105,11 +105,14 @@ void set_problem(const PathProblem& path, const Options& options, const Scheme& 
   problem.before = options.viscosity > 0 ? &state.path.chain : nullptr;
 }
 
+/// Weight of the forces at a step's end.
+double late_share(const Scheme& scheme) { return scheme.kind == Integrator::bdf2 ? 0.5 : 1 - scheme.alpha_f; }
+
 /// Work of what moves the supports during the step, by the reactions before and after with the weights that the scheme
 /// itself gives to forces at either end: Euler takes those after for the whole step.
 double support_work(const ChainProblem& problem, const Scheme& scheme, const State& state, const Chain& start,
                     const Workspace& work, const std::vector<double>& residuals) {
-  const double after = scheme.kind == Integrator::bdf2 ? 0.5 : 1 - scheme.alpha_f;
+  const double after = late_share(scheme);
   double sum = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double before = i < state.path.multipliers.size() ? state.path.multipliers[i] : work.multipliers[i];
@@ -361,8 +364,10 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
-    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - load_work(work.problem, state.points.x, work.x) -
-             support_work(work.problem, scheme, state, work.start, work, work.residuals);
+    growth =
+        elastic1 - state.elastic + kinetic1 - kinetic0 - load_work(work.problem, state.points.x, work.x) -
+        support_work(work.problem, scheme, state, work.start, work, work.residuals) -
+        solid_work(ribbon, work.solids, work.before, work.problem.contact, work.newton.contacts, late_share(scheme));
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state, halvings)) continue;

@@ -1,0 +1,144 @@
+// Strips that fall on solids: they stay out, come to rest on their weight, and no step carries them through.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "implicit/motions.hpp"
+#include "solver/paths.hpp"
+#include "wunderlich/math/rotation.hpp"
+
+namespace wunderlich::testing {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+/// A free strip of 0.3 m x 30 mm, 0.1 kg/m^2 over solids, let go from along x.
+Motion drop(double bending_stiffness, int segments, const std::vector<constraint::Obstacle>& solids, const Pose& base,
+            const Vec3& gravity) {
+  geometry::RibbonSpec spec = sheet(bending_stiffness, false);
+  spec.segments = segments;
+  constraint::Surroundings surroundings;
+  surroundings.gravity = gravity;
+  surroundings.obstacles = solids;
+  surroundings.contact.distance = spec.width / 30;
+  Motion m = make_motion(spec, surroundings);
+  start(geometry::straight_chain(m.path.ribbon, base), m);
+  return m;
+}
+
+constraint::Obstacle solid(const contact::Shape& shape, const Pose& pose) {
+  constraint::Obstacle obstacle;
+  obstacle.shape = shape;
+  obstacle.motion.keys = {{0, pose, 0}};
+  return obstacle;
+}
+
+Pose along_x(double x, double z) { return {Vec3(x, 0, z), straight_frame()}; }
+Pose axis_y(double x, double z, double turn) {
+  return {Vec3(x, 0, z), math::exp_map(Vec3(0, 0, turn)) * math::exp_map(Vec3(-std::acos(0.0), 0, 0))};
+}
+
+/// Smallest distance of the facets to the solids, by looking at many points of each, apart from the solver's.
+double clearance(const Motion& m) {
+  const geometry::State shape = implicit::shape_of(m.path, m.state);
+  const geometry::Ribbon& ribbon = m.path.ribbon;
+  double least = 1e9;
+  constexpr int kFine = 24;
+  for (std::size_t s = 0; s < shape.q.size(); ++s) {
+    const Mat3 frame = shape.q[s].toRotationMatrix();
+    const auto corner = [&](std::size_t node, double v) -> Vec3 {
+      return shape.r[node] + v * (frame.col(1) + shape.eta[node] * frame.col(2));
+    };
+    for (int i = 0; i <= kFine; ++i) {
+      for (int k = 0; k <= kFine; ++k) {
+        const double f = static_cast<double>(i) / kFine, v = ribbon.width * (static_cast<double>(k) / kFine - 0.5);
+        const Vec3 at = (1 - f) * corner(s, v) + f * corner(s + 1, v);
+        for (const auto& obstacle : m.path.surroundings.obstacles) {
+          const Pose pose = constraint::pose_at(obstacle.motion, m.state.path.t);
+          least = std::min(least, contact::distance(obstacle.shape, pose, at).value);
+        }
+      }
+    }
+  }
+  return least;
+}
+
+double lowest_clearance(double duration, double dt, Motion& m) {
+  double least = clearance(m);
+  const long steps = std::lround(duration / dt);
+  for (long i = 1; i <= steps; ++i) {
+    EXPECT_TRUE(move_to(static_cast<double>(i) * dt, m)) << m.failure << " at " << m.state.path.t;
+    if (m.state.path.t < (static_cast<double>(i) - 0.5) * dt) break;
+    least = std::min(least, clearance(m));
+  }
+  return least;
+}
+
+TEST(Contact, ADrapeStaysOutAtAnyStep) {
+  for (const double turn : {0.0, 0.5}) {
+    for (const double dt : {1e-3, 2e-3, 5e-3, 1e-2}) {
+      if (is_slow_build() && dt < 5e-3) continue;
+      SCOPED_TRACE(dt);
+      Motion m = drop(2e-5, 20, {solid(contact::Cylinder{0.03, 1e9}, axis_y(0.15, -0.05, turn))}, along_x(0, 0),
+                      Vec3(0, 0, -kGravity));
+      const double least = lowest_clearance(is_slow_build() ? 0.1 : 0.4, dt, m);
+      show("smallest distance of a drape", least, 0);
+      EXPECT_GT(least, 0);
+      EXPECT_LT(least, 1e-3);  // it got there
+    }
+  }
+}
+
+/// At rest on a plane the barrier's forces add up to the weight.
+TEST(Contact, ReactionIsTheWeight) {
+  Motion m = drop(1e-2, 20, {solid(contact::HalfSpace{}, along_x(0, 0))}, along_x(0, 9.5e-4), Vec3(0, 0, -kGravity));
+  m.path.surroundings.obstacles[0].motion.keys[0].pose.frame = Quat::Identity();
+  m.options.integrator = implicit::Integrator::euler;
+  start(geometry::straight_chain(m.path.ribbon, along_x(0, 9.5e-4)), m);
+  for (int i = 1; i <= 400; ++i) ASSERT_TRUE(move_to(5e-3 * i, m)) << m.failure;
+  solver::ContactProblem contact;
+  solver::place_solids(m.path.ribbon, m.path.surroundings, m.state.path.t, contact);
+  geometry::Kinematics k;
+  geometry::forward_kinematics(m.path.ribbon, m.state.path.chain, k);
+  std::vector<solver::ContactPoint> points;
+  solver::find_points(m.path.ribbon, contact, m.state.path.chain, k, points);
+  math::ChainSystem system;
+  solver::add_contact(m.path.ribbon, contact, m.state.path.chain, k, points, system);
+  Vec3 push = Vec3::Zero();
+  for (const math::SurfaceTerm& term : system.surfaces) push -= term.gradient.head<3>();
+  const double weight = 0.3 * 0.03 * 0.1 * kGravity;
+  show("reaction over weight, less 1", std::abs(push.z() / weight - 1), 1e-6);
+  EXPECT_NEAR(push.z() / weight, 1, 1e-6);
+  EXPECT_LT(push.head<2>().norm() / weight, 1e-6);
+}
+
+/// Against a thin rod, at a speed that goes 20 diameters in a step.
+TEST(Contact, NothingIsLeaptOver) {
+  Motion m = drop(1e-3, 20, {solid(contact::Capsule{1e-3, 1}, axis_y(0.15, -0.1, 0))}, along_x(0, 0), Vec3::Zero());
+  geometry::State shape = geometry::state_of(m.path.ribbon, m.state.path.chain, 0);
+  for (Vec3& v : shape.r_dot) v = Vec3(0, 0, -8);
+  start(shape, Vec3::Zero(), m);
+  const double least = lowest_clearance(0.04, 5e-3, m);
+  EXPECT_GT(least, 0);
+  double top = -1, bottom = 1;
+  for (const Vec3& r : implicit::shape_of(m.path, m.state).r) {
+    top = std::max(top, r.z());
+    bottom = std::min(bottom, r.z());
+  }
+  EXPECT_GT(top, -0.1);  // it hangs over the rod ...
+  EXPECT_LT(bottom, -0.2);
+}
+
+/// A solid that moves pushes the strip along.
+TEST(Contact, AMovingSolidPushes) {
+  constraint::Obstacle wall = solid(contact::Sphere{0.05}, {Vec3(0.15, 0, -0.06), Quat::Identity()});
+  wall.motion.keys.push_back({0.1, {Vec3(0.15, 0, 0.06), Quat::Identity()}, 0});
+  Motion m = drop(1e-3, 20, {wall}, along_x(0, 0), Vec3::Zero());
+  const double least = lowest_clearance(0.12, 2e-3, m);
+  EXPECT_GT(least, 0);
+  EXPECT_GT(implicit::shape_of(m.path, m.state).r[10].z(), 0.1);
+}
+
+}  // namespace
+}  // namespace wunderlich::testing
