@@ -148,6 +148,9 @@ io::RunOutput output_of(const StoredRun& run, const Summary& summary) {
     output.history.push_back(record.history);
     output.frames.push_back(frame_of(run.scene, record.state));
   }
+  std::vector<double> times;
+  for (const Frame& frame : output.frames) times.push_back(frame.time);
+  output.bodies = bodies_of(run.scene, times);
   output.pattern = pattern_of(run.scene, run.progress.records.back().state);
   output.parameters = parameters_of(run.scene);
   output.scene_text = run.scene.resolved;

@@ -261,6 +261,30 @@ TEST(Report, NormalsSurviveTheirPacking) {
   }
 }
 
+TEST(Report, HoldsBodiesWithTheirPosesInTheChosenFrames) {
+  RunOutput run = sample_run(4000);
+  while (run.frames.size() < 40) run.frames.insert(run.frames.begin() + 1, run.frames[1]);
+  Body body;
+  body.mesh.points = {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 3)};
+  body.mesh.normals = std::vector<Vec3>(3, Vec3::UnitZ());
+  body.mesh.triangles = {{0, 2, 1}};
+  for (int k = 0; k < 40; ++k) body.poses.push_back({Vec3(k, 0, 0), Quat(0.6, 0, 0.8, 0)});
+  run.bodies = {body};
+  const nlohmann::json data = page_data(report_page(run));
+  const std::size_t frames = data["frames"].size();
+  ASSERT_LT(frames, 40u);
+  const nlohmann::json stored = data["bodies"].at(0);
+  EXPECT_EQ(load<float>(unbase64(stored["points"]), 4 * 4), 2.0f);
+  EXPECT_EQ(load<float>(unbase64(stored["normals"]), 4 * 8), 1.0f);
+  EXPECT_EQ(load<std::uint32_t>(unbase64(stored["triangles"]), 4), 2u);
+  const std::string poses = unbase64(stored["poses"]);
+  ASSERT_EQ(poses.size(), 28 * frames);
+  EXPECT_EQ(load<float>(poses, 0), 0.0f);
+  EXPECT_EQ(load<float>(poses, 28 * (frames - 1)), 39.0f) << "the pose of the last frame";
+  EXPECT_EQ(load<float>(poses, 4 * 4), 0.8f);
+  EXPECT_EQ(load<float>(poses, 4 * 6), 0.6f);
+}
+
 TEST(Report, DropsFramesOfAHeavyRunButNeverTheEnds) {
   RunOutput run = sample_run(4000);
   while (run.frames.size() < 40) run.frames.insert(run.frames.begin() + 1, run.frames[1]);

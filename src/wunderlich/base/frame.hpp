@@ -44,6 +44,12 @@ struct Frame {
   Mesh surface;                              ///< same connectivity in every frame of a run
 };
 
+/// A rigid thing beside the strip: what an obstacle looks like and where it is.
+struct Body {
+  Mesh mesh;                ///< in its own frame
+  std::vector<Pose> poses;  ///< of its own frame, one for each frame of the run
+};
+
 /// The strip unrolled flat: x along the strip, y across it.
 struct FlatPattern {
   double length = 0;                                    ///< [m]

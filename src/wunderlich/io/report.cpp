@@ -85,12 +85,16 @@ Json frame_json(const Frame& frame, const Cube& cube, double width) {
           {"eta", column(line, [](const CenterlineSample& s) { return s.eta; })}};
 }
 
-Json mesh_json(const Mesh& mesh) {
+std::string packed_triangles(const Mesh& mesh) {
   std::string triangles;
   for (const auto& triangle : mesh.triangles) {
     for (const int point : triangle) append(triangles, static_cast<std::uint32_t>(point));
   }
-  Json out = {{"triangles", base64(triangles)}};
+  return base64(triangles);
+}
+
+Json mesh_json(const Mesh& mesh) {
+  Json out = {{"triangles", packed_triangles(mesh)}};
   for (const PointField& field : mesh.fields) {
     if (field.name != "u" && field.name != "v") continue;
     std::string values;
@@ -98,6 +102,23 @@ Json mesh_json(const Mesh& mesh) {
     out[field.name] = base64(values);
   }
   return out;
+}
+
+/// A body in single precision; its poses x, y, z and quaternion x, y, z, w for each of the chosen frames.
+Json body_json(const Body& body, const std::vector<Frame>& frames, const std::vector<const Frame*>& chosen_frames) {
+  std::string points, normals, poses;
+  for (const Vec3& p : body.mesh.points) append_float3(points, p);
+  for (const Vec3& n : body.mesh.normals) append_float3(normals, n);
+  for (const Frame* frame : chosen_frames) {
+    const Pose& pose = body.poses[static_cast<std::size_t>(frame - frames.data())];
+    append_float3(poses, pose.position);
+    append_float3(poses, pose.frame.vec());
+    append(poses, static_cast<float>(pose.frame.w()));
+  }
+  return {{"points", base64(points)},
+          {"normals", base64(normals)},
+          {"triangles", packed_triangles(body.mesh)},
+          {"poses", base64(poses)}};
 }
 
 Json history_json(const std::vector<HistoryRow>& history) {
@@ -150,6 +171,8 @@ Json report_json(const RunOutput& output) {
   data["low"] = {cube.low.x(), cube.low.y(), cube.low.z()};
   data["scale"] = cube.size() / largest_count;
   data["mesh"] = mesh_json(frames.front()->surface);
+  data["bodies"] = Json::array();
+  for (const Body& body : output.bodies) data["bodies"].push_back(body_json(body, output.frames, frames));
   data["u"] = column(frames.front()->centerline, [](const CenterlineSample& s) { return s.u; });
   data["frames"] = Json::array();
   for (const Frame* frame : frames) data["frames"].push_back(frame_json(*frame, cube, width));

@@ -20,6 +20,7 @@ struct RunOutput {
   Summary summary;
   std::vector<HistoryRow> history;
   std::vector<Frame> frames;  ///< at least one; the last is the final state
+  std::vector<Body> bodies;   ///< obstacles
   FlatPattern pattern;        ///< of the final state
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides

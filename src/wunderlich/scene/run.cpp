@@ -1,5 +1,6 @@
 #include "wunderlich/scene/run.hpp"
 
+#include "wunderlich/contact/mesh.hpp"
 #include "wunderlich/geometry/surface.hpp"
 #include "wunderlich/scene/recording.hpp"
 
@@ -26,6 +27,17 @@ Frame frame_of(const Scene& scene, const geometry::State& state) {
 
 FlatPattern pattern_of(const Scene& scene, const geometry::State& state) {
   return geometry::flat_pattern(ribbon_of(scene, state), state);
+}
+
+std::vector<Body> bodies_of(const Scene& scene, const std::vector<double>& times) {
+  std::vector<Body> bodies;
+  for (const constraint::Obstacle& obstacle : scene.surroundings.obstacles) {
+    // A plane is to reach beyond the strip wherever that may lie on it, and not much farther.
+    Body body{contact::mesh_of(obstacle.shape, 2 * scene.ribbon.length), {}};
+    for (const double time : times) body.poses.push_back(pose_at(obstacle.motion, time));
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
 }
 
 }  // namespace wunderlich::scene

@@ -48,4 +48,7 @@ RunResult run(const Scene& scene, const Observer& observer, const Progress* resu
 Frame frame_of(const Scene& scene, const geometry::State& state);
 FlatPattern pattern_of(const Scene& scene, const geometry::State& state);
 
+/// The obstacles at these times.
+std::vector<Body> bodies_of(const Scene& scene, const std::vector<double>& times);
+
 }  // namespace wunderlich::scene

@@ -37,6 +37,14 @@ export interface History {
   length: number[]; torsion: number[]; ruling: number[]; area: number[]; iterations: number[]; step_us: number[];
 }
 
+/** An obstacle: a mesh in its own frame, and where that stands. */
+export interface Body {
+  points: Float32Array;
+  normals: Float32Array;
+  triangles: Uint32Array;
+  poses: Float32Array;   // x, y, z and quaternion x, y, z, w for each frame
+}
+
 export interface Run {
   title: string;
   summary: Summary;
@@ -50,6 +58,7 @@ export interface Run {
   pointU: Float32Array | null;   // arc length of each mesh point; absent for models without a centerline
   u: Float32Array;               // arc length of each node [m]
   frames: Frame[];
+  bodies: Body[];
 }
 
 function bytes(text: string): ArrayBuffer {
@@ -98,6 +107,16 @@ function frame(raw: any, low: number[], scale: number): Frame {
   };
 }
 
+// eslint-disable-next-line @typescript-eslint/no-explicit-any
+function body(raw: any): Body {
+  return {
+    points: floats(raw.points),
+    normals: floats(raw.normals),
+    triangles: new Uint32Array(bytes(raw.triangles)),
+    poses: floats(raw.poses),
+  };
+}
+
 export function readRun(text: string): Run {
   const raw = JSON.parse(text);
   return {
@@ -113,6 +132,7 @@ export function readRun(text: string): Run {
     pointU: raw.mesh.u ? floats(raw.mesh.u) : null,
     u: floats(raw.u),
     frames: raw.frames.map((f: unknown) => frame(f, raw.low, raw.scale)),
+    bodies: raw.bodies.map(body),
   };
 }
 
