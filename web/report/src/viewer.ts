@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { RoomEnvironment } from 'three/examples/jsm/environments/RoomEnvironment.js';
 import { diverging, fieldRange } from './colour';
-import { bodyMesh, placeBody } from './bodies';
+import { addBodies } from './bodies';
 import { isOneSided, type FieldName, type Frame, type Run } from './data';
 import { bestView, fitsOf, frameAll, type Fit } from './framing';
 
@@ -146,12 +146,10 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
   const rulingLines = lines(run.frames[0].rulings.length / 3, 0x2a1a12, 0.5);
   rulingLines.visible = false;
   const marker = lines(2, 0xffffff, 1);
-  marker.visible = false;
-  marker.renderOrder = 2;
+  Object.assign(marker, { visible: false, renderOrder: 2 });
   const body = new THREE.Group();
   body.add(mesh, rimLines, rulingLines, marker);
-  const obstacles = run.bodies.map(bodyMesh);
-  if (obstacles.length > 0) body.add(...obstacles);
+  const placeBodies = addBodies(body, run.bodies);
   scene.add(body);
 
   const floor = new THREE.Mesh(new THREE.CircleGeometry(6, 48), new THREE.ShadowMaterial({ opacity: 0.16 }));
@@ -236,7 +234,7 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
       (ends.array as Float32Array).set((ruling.array as Float32Array).subarray(6 * marked, 6 * marked + 6));
       ends.needsUpdate = true;
     }
-    obstacles.forEach((obstacle, i) => placeBody(obstacle, run.bodies[i], k, next, t));
+    placeBodies(k, next, t);
     paintPoints(a, b, t);
     place(fits[k], fits[next], t);
     request();
