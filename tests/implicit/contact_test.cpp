@@ -113,6 +113,35 @@ TEST(Contact, ReactionIsTheWeight) {
   EXPECT_LT(push.head<2>().norm() / weight, 1e-6);
 }
 
+/// Speed along the slope, down it, after 0.5 s on a plane of slope tan(alpha) with friction.
+double slide(double slope, double friction) {
+  const double alpha = std::atan(slope);
+  constraint::Obstacle plane = solid(contact::HalfSpace{}, {Vec3::Zero(), Quat::Identity()});
+  plane.friction = friction;
+  // The plane is level and gravity leans: down the slope is (1, 1, 0)/sqrt(2), aslant to the strip.
+  const Vec3 down = Vec3(1, 1, 0).normalized();
+  Motion m =
+      drop(1e-2, 12, {plane}, along_x(0, 9e-4), kGravity * (std::sin(alpha) * down - std::cos(alpha) * Vec3::UnitZ()));
+  m.options.integrator = implicit::Integrator::euler;
+  const double dt = 2.5e-3;
+  for (int i = 1; i <= 200; ++i) EXPECT_TRUE(move_to(dt * i, m)) << m.failure;
+  return implicit::shape_of(m.path, m.state).r_dot[6].dot(down);
+}
+
+/// It slips if and only if tan(alpha) > mu; what creeps below that is slower than 1 mm/s.
+TEST(Contact, AStripSlipsOnASlopeAsCoulombSays) {
+  for (const double friction : {0.1, 0.3, 0.6}) {
+    const double held = slide(0.99 * friction, friction), slips = slide(1.01 * friction, friction);
+    const double steeper = slide(1.5 * friction, friction), alpha = std::atan(1.5 * friction);
+    show("creep below the threshold [m/s]", held, 1e-3);
+    show("slip above it [m/s]", slips, 1e-3);
+    EXPECT_LT(held, 1e-3);
+    EXPECT_GT(slips, 1e-3);
+    const double free = 0.5 * kGravity * (std::sin(alpha) - friction * std::cos(alpha));
+    EXPECT_NEAR(steeper, free, 0.03 * free);
+  }
+}
+
 /// Against a thin rod, at a speed that goes 20 diameters in a step.
 TEST(Contact, NothingIsLeaptOver) {
   Motion m = drop(1e-3, 20, {solid(contact::Capsule{1e-3, 1}, axis_y(0.15, -0.1, 0))}, along_x(0, 0), Vec3::Zero());

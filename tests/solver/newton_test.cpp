@@ -97,25 +97,37 @@ void add_holds(const Kinematics& k, Random& random, ChainProblem& problem) {
 }
 
 /// Solids all round, within whose barriers most of the strip is.
-void add_solids(const Chain& chain, ChainProblem& problem) {
+void add_solids(const Chain& chain, const Kinematics& k, ChainProblem& problem) {
   const auto at = [&](double x, double y, double z) {
     return Pose{chain.base.position + Vec3(x, y, z), math::exp_map(Vec3(0.3, -1.1, 0.4))};
   };
   solver::ContactProblem& contact = problem.contact;
-  contact.solids = {{contact::HalfSpace{}, {chain.base.position - Vec3(0, 0, 4), Quat::Identity()}},
-                    {contact::Sphere{1.2}, at(4, 1, 0)},
-                    {contact::Capsule{0.7, 3}, at(-4, 0, 1)}};
+  contact.solids = {{contact::HalfSpace{}, {chain.base.position - Vec3(0, 0, 4), Quat::Identity()}, 0},
+                    {contact::Sphere{1.2}, at(4, 1, 0), 0},
+                    {contact::Capsule{0.7, 3}, at(-4, 0, 1), 0}};
   contact.distance = 5;
   contact.thickness = 0.1;
   contact.stiffness = 3;
   contact.along = 2;
   contact.across = 3;
+  contact.slip = 0.3;
+  for (std::size_t s : {5u, 3u, 2u}) {  // two slide, one sticks
+    const double off = s == 2 ? 0.1 : 1;
+    solver::Friction friction;
+    friction.segment = s;
+    friction.along = -0.03;
+    friction.across = 0.05;
+    friction.from = k.r[s + 1] + off * Vec3(0.5, -0.7, 0.2);
+    friction.normal = Vec3(1, 2, -2) / 3;
+    friction.force = 1.5;
+    contact.friction.push_back(friction);
+  }
 }
 
 double contact_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k) {
   std::vector<solver::ContactPoint> points;
   find_points(ribbon, problem.contact, chain, k, points);
-  return contact_energy(ribbon, problem.contact, points);
+  return contact_energy(ribbon, problem.contact, points) + friction_value(problem.contact, k);
 }
 
 void linearise_all(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
@@ -186,9 +198,9 @@ TEST(SweepGradient, IsTheSlopeOfTheObjective) {
         ChainProblem problem = random_problem(ribbon, {elastic, 3, strain}, random);
         const Chain before = random_chain(ribbon, random);
         add_viscosity(before, problem);
-        add_solids(chain, problem);
         Kinematics here;
         geometry::forward_kinematics(ribbon, chain, here);
+        add_solids(chain, here, problem);
         EXPECT_GT(contact_value(ribbon, problem, chain, here), 0);
         expect_gradient(ribbon, problem, chain, {}, random);
         Kinematics k;
@@ -243,7 +255,9 @@ TEST(SweepHessian, IsTheDerivativeOfTheGradient) {
     const Chain chain = random_chain(ribbon, random), before = random_chain(ribbon, random);
     ChainProblem problem = random_problem(ribbon, {energy::Elastic::wunderlich, 3, strain}, random);
     add_viscosity(before, problem);
-    add_solids(chain, problem);
+    Kinematics here;
+    geometry::forward_kinematics(ribbon, chain, here);
+    add_solids(chain, here, problem);
     problem.loads.clear();
     problem.base_fixed.fill(true);
     math::ChainSystem system;

@@ -17,6 +17,7 @@ namespace {
 constexpr double kStiffness = 100;   // barrier over weight or bending: light contact, few iterations
 constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
 constexpr int kMostCells = 16;       // across a strip, and along a segment
+constexpr double kSlipSpeed = 1e-3;  // below which friction is less than Coulomb's [m/s]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Barrier {
@@ -98,16 +99,60 @@ void add_point(const Lever& lever, const Vec3& normal, const Mat3& curvature, co
   }
 }
 
+/// The sweep's term of a segment; made where there is none.
+math::SurfaceTerm& term_of(std::size_t segment, math::ChainSystem& system) {
+  const auto node = static_cast<int>(segment);
+  const auto later = [](const math::SurfaceTerm& a, int b) { return a.node > b; };
+  auto place = std::lower_bound(system.surfaces.begin(), system.surfaces.end(), node, later);
+  if (place == system.surfaces.end() || place->node != node) {
+    math::SurfaceTerm term;
+    term.node = node;
+    place = system.surfaces.insert(place, term);
+  }
+  return *place;
+}
+
+/// Way along the solid's surface and the point's arm.
+struct Slide {
+  Vec3 way, arm;
+};
+
+Slide slide_of(const Friction& friction, const Kinematics& k) {
+  const Mat3& frame = k.frame[friction.segment];
+  const Vec3 arm = friction.along * frame.col(2) + friction.across * frame.col(1);
+  const Vec3 way = k.r[friction.segment + 1] + arm - friction.from;
+  return {way - friction.normal.dot(way) * friction.normal, arm};
+}
+
+/// Force times way, smooth at rest.   @eq Li2020:14
+void add_friction(const Friction& friction, double slip, const Slide& slide, math::SurfaceTerm& term) {
+  const double way = slide.way.norm(), share = std::min(1.0, way / slip);
+  // (2 share - share^2) / way and its derivative, both finite at rest
+  const double pull = friction.force * (share < 1 ? (2 - share) / slip : 1 / way);
+  const double more = friction.force * (share < 1 ? 2 * (1 - share) / slip : 0);
+  const Mat3 tangent = Mat3::Identity() - friction.normal * friction.normal.transpose();
+  Mat3 stiffness = pull * tangent;
+  if (way > 0) stiffness += (more - pull) / (way * way) * slide.way * slide.way.transpose();
+  Eigen::Matrix<double, 3, 6> move;
+  move << Mat3::Identity(), -math::skew(slide.arm);
+  const Vec3 force = pull * slide.way;
+  term.gradient.head<6>() += move.transpose() * force;
+  term.hessian.topLeftCorner<6, 6>() += move.transpose() * stiffness * move;
+  term.geometric.block<3, 3>(3, 3) +=
+      0.5 * (force * slide.arm.transpose() + slide.arm * force.transpose()) - force.dot(slide.arm) * Mat3::Identity();
+}
+
 }  // namespace
 
 void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
                   ContactProblem& problem) {
   problem.solids.resize(surroundings.obstacles.size());
+  problem.friction.clear();
   if (problem.empty()) return;
   double radius = kInfinity;
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     const constraint::Obstacle& obstacle = surroundings.obstacles[i];
-    problem.solids[i] = {obstacle.shape, constraint::pose_at(obstacle.motion, t)};
+    problem.solids[i] = {obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction};
     radius = std::min(radius, smallest_radius(obstacle.shape));
   }
   const double w = ribbon.width, d = surroundings.contact.distance;
@@ -133,7 +178,8 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
   const auto n = static_cast<std::size_t>(ribbon.segments);
   points.resize(problem.solids.size() * n * static_cast<std::size_t>((problem.along + 1) * (problem.across + 1)));
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
-    const auto& [shape, pose] = problem.solids[i];
+    const contact::Shape& shape = problem.solids[i].shape;
+    const Pose& pose = problem.solids[i].pose;
     const Pose own;
     const Mat3 to_own = pose.frame.conjugate().toRotationMatrix();
     visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
@@ -202,13 +248,6 @@ void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chai
     visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
       if (!touches(index)) return;
       const auto node = static_cast<int>(s);
-      const auto later = [](const math::SurfaceTerm& a, int b) { return a.node > b; };
-      auto place = std::lower_bound(system.surfaces.begin(), system.surfaces.end(), node, later);
-      if (place == system.surfaces.end() || place->node != node) {
-        math::SurfaceTerm term;
-        term.node = node;
-        place = system.surfaces.insert(place, term);
-      }
       Barrier b = barrier(points[index].gap, problem.distance);
       const double weight = problem.stiffness * at.area;
       b = {weight * b.value, weight * b.first, weight * b.second};
@@ -216,9 +255,47 @@ void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chai
       if (geometry::eta_is_free(ribbon, node)) lever.slant[0] = (1 - at.share) * at.v * k.frame[s].col(2);
       if (geometry::eta_is_free(ribbon, node + 1)) lever.slant[1] = at.share * at.v * k.frame[s].col(2);
       add_point(lever, to_space * points[index].normal, to_space * points[index].hessian * to_space.transpose(), b,
-                *place);
+                term_of(s, system));
     });
   }
+  for (const Friction& friction : problem.friction) {
+    add_friction(friction, problem.slip, slide_of(friction, k), term_of(friction.segment, system));
+  }
+}
+
+void set_friction(const Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& points,
+                  const Chain& chain, const Kinematics& k, double h, ContactProblem& problem) {
+  problem.friction.clear();
+  problem.slip = kSlipSpeed * h;
+  for (std::size_t i = 0; i < from.solids.size(); ++i) {
+    if (problem.solids[i].friction == 0) continue;
+    const Pose &pose0 = from.solids[i].pose, &pose1 = problem.solids[i].pose;
+    visit_points(ribbon, from, i, [&](std::size_t s, const Station& at, std::size_t index) {
+      const ContactPoint& point = points[index];
+      const double normal_force = -from.stiffness * at.area * barrier(point.gap, from.distance).first;
+      if (!(normal_force > 0)) return;
+      const double eta = (1 - at.share) * chain.eta[s] + at.share * chain.eta[s + 1];
+      Friction friction;
+      friction.segment = s;
+      friction.along = (at.share - 1) * ribbon.rest_length[s] + at.v * eta;
+      friction.across = at.v;
+      // Exactly where the point is, moved along as the solid's points are.
+      friction.from = k.r[s + 1] + arm(ribbon, chain, k, s, at) + pose1.position + pose1.frame * point.at -
+                      pose0.position - pose0.frame * point.at;
+      friction.normal = pose1.frame * point.normal;
+      friction.force = problem.solids[i].friction * normal_force;
+      problem.friction.push_back(friction);
+    });
+  }
+}
+
+double friction_value(const ContactProblem& problem, const Kinematics& k) {
+  double sum = 0;
+  for (const Friction& friction : problem.friction) {
+    const double way = slide_of(friction, k).way.norm(), share = way / problem.slip;
+    sum += friction.force * (share < 1 ? way * share * (1 - share / 3) : way - problem.slip / 3);
+  }
+  return sum;
 }
 
 }  // namespace wunderlich::solver

@@ -10,19 +10,32 @@
 
 namespace wunderlich::solver {
 
+/// Coulomb's friction on one point during a step: it may go with the solid, and slides against a force that was there
+/// when the step began. Its ruling is that of the step's start.   @eq Li2020:14
+struct Friction {
+  std::size_t segment;
+  double along, across;  ///< of the point from the segment's far node, along d3 and d2 [m]
+  Vec3 from;             ///< where it would be had it gone with the solid [m]
+  Vec3 normal;
+  double force;  ///< coefficient times normal force [N]
+};
+
 /// Solids at one time, and the points of each segment that feel them.
 struct ContactProblem {
   struct Solid {
     contact::Shape shape;
     Pose pose;
+    double friction;  ///< Coulomb's coefficient
   };
   std::vector<Solid> solids;
-  double distance = 0;   ///< at which forces begin [m]
-  double thickness = 0;  ///< that stays between surface and solid [m]
-  double margin = 0;     ///< that points keep so that facets between them stay out [m]
-  double stiffness = 0;  ///< of the barrier, per area [N/m^3]
-  int along = 1;         ///< cells of points along a segment
-  int across = 1;        ///< and across it
+  double distance = 0;             ///< at which forces begin [m]
+  double thickness = 0;            ///< that stays between surface and solid [m]
+  double margin = 0;               ///< that points keep so that facets between them stay out [m]
+  double stiffness = 0;            ///< of the barrier, per area [N/m^3]
+  int along = 1;                   ///< cells of points along a segment
+  int across = 1;                  ///< and across it
+  std::vector<Friction> friction;  ///< one a point that rubs, segments in decreasing order for each solid
+  double slip = 0;                 ///< way in a step from which on friction has its full force [m]
   bool empty() const { return solids.empty(); }
 };
 
@@ -58,7 +71,15 @@ double smallest_gap(const std::vector<ContactPoint>& points);
 double solid_work(const geometry::Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& before,
                   const ContactProblem& to, const std::vector<ContactPoint>& after, double late);
 
-/// Derivatives of the barrier, as terms of the sweep. `points` are those of the chain.
+/// Friction in a step of length h: of the points as they are at its start, where the solids are as in `from`.
+void set_friction(const geometry::Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& points,
+                  const geometry::Chain& chain, const geometry::Kinematics& kinematics, double h,
+                  ContactProblem& problem);
+
+/// What is minimised for it: force times way, rounded off where the way is short [J].
+double friction_value(const ContactProblem& problem, const geometry::Kinematics& kinematics);
+
+/// Derivatives of barrier and friction, as terms of the sweep. `points` are those of the chain.
 void add_contact(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,
                  const geometry::Kinematics& kinematics, const std::vector<ContactPoint>& points,
                  math::ChainSystem& system);

@@ -67,9 +67,10 @@ struct ObjectiveValue {
   double elastic = 0;
   double barrier = 0;
   double ties = 0;
-  double loads = 0;    ///< minus their work since the reference
-  double contact = 0;  ///< of its barrier; `objective` leaves it out
-  double total() const { return elastic + barrier + ties + loads + contact; }
+  double loads = 0;     ///< minus their work since the reference
+  double contact = 0;   ///< of its barrier; `objective` leaves it out
+  double friction = 0;  ///< as well
+  double total() const { return elastic + barrier + ties + loads + contact + friction; }
 };
 
 /// `reference`: frames that torques are measured from (a torque has no potential; its work is taken to first

@@ -172,6 +172,7 @@ void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chai
   if (problem.contact.empty()) return;
   find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
   work.value.contact = contact_energy(ribbon, problem.contact, work.contacts);
+  work.value.friction = friction_value(problem.contact, work.kinematics);
 }
 
 /// Kinematics and value of the trial; infinite where something would be in its way.
@@ -185,6 +186,7 @@ void value_trial(const Iterate& at) {
   work.trial_value.contact = may_go(contact, work.contacts, work.trial_contacts)
                                  ? contact_energy(at.ribbon, contact, work.trial_contacts)
                                  : std::numeric_limits<double>::infinity();
+  work.trial_value.friction = friction_value(contact, work.trial_kinematics);
 }
 
 /// The trial becomes the iterate; loads are counted from here.

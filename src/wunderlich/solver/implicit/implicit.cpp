@@ -71,14 +71,15 @@ void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
 }
 
 /// Where Newton's method may start: the prediction if nothing is in its way, or else where the strip is. False if that
-/// is where a moving solid goes.
-bool start_clear(const PathProblem& path, const State& state, Workspace& work) {
+/// is where a moving solid goes. Says what rubs as well.
+bool start_clear(const PathProblem& path, const State& state, double h, Workspace& work) {
   const Ribbon& ribbon = path.ribbon;
-  const ContactProblem& contact = work.problem.contact;
+  ContactProblem& contact = work.problem.contact;
   if (contact.empty()) return true;
   place_solids(ribbon, path.surroundings, state.path.t, work.solids);
   geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
   find_points(ribbon, work.solids, state.path.chain, work.kinematics, work.before);
+  set_friction(ribbon, work.solids, work.before, state.path.chain, work.kinematics, h, contact);
   const auto is_clear = [&](const Chain& chain) {
     geometry::forward_kinematics(ribbon, chain, work.kinematics);
     find_points(ribbon, contact, chain, work.kinematics, work.predicted);
@@ -346,7 +347,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     work.start.base = work.trial.base;
     if (!work.multipliers.empty()) geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
     constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
-    if (!start_clear(path, state, work)) {
+    if (!start_clear(path, state, h, work)) {
       state.level = level;
       report.failure = "a solid runs into the strip within a step of " + std::to_string(h) + " s";
       return report;
