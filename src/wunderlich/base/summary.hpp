@@ -61,6 +61,13 @@ struct HistoryRow {
   double step_us = 0;
 };
 
+/// With solids, beyond the thickness that is kept.
+struct ContactSummary {
+  int count = 0;                ///< points within the distance at which forces begin, at the end
+  double max_penetration = 0;   ///< largest at any step [m]
+  double minimum_distance = 0;  ///< smallest at any step [m]
+};
+
 struct Summary {
   std::string scene;
   std::string model = "ribbon";
@@ -74,6 +81,7 @@ struct Summary {
   ConstraintErrors constraints;
   double area_error = 0;
   Timing timing;
+  std::optional<ContactSummary> contact;
   std::optional<double> closure_error;  ///< loops: relative to the length
   std::vector<Reaction> ends;           ///< start, end; empty for loops
   std::optional<Stability> stability;   ///< equilibria

@@ -73,6 +73,11 @@ Json to_json(const Summary& summary) {
   out["constraints"] = constraints_json(summary.constraints);
   out["area_error"] = summary.area_error;
   out["timing"] = timing_json(summary.timing);
+  if (summary.contact) {
+    out["contact"] = {{"count", summary.contact->count},
+                      {"max_penetration", summary.contact->max_penetration},
+                      {"minimum_distance", summary.contact->minimum_distance}};
+  }
   if (summary.closure_error) out["closure_error"] = *summary.closure_error;
   out["ends"] = Json::array();
   for (const Reaction& end : summary.ends) {
@@ -117,6 +122,10 @@ Summary from_json(const Json& in) {
                      errors.at("max_torsion_mismatch"), errors.at("max_ruling_ratio")};
   out.area_error = in.at("area_error");
   out.timing = timing_from(in.at("timing"));
+  if (in.contains("contact")) {
+    const Json& contact = in["contact"];
+    out.contact = ContactSummary{contact.at("count"), contact.at("max_penetration"), contact.at("minimum_distance")};
+  }
   if (in.contains("closure_error")) out.closure_error = in["closure_error"].get<double>();
   for (const Json& end : in.at("ends"))
     out.ends.push_back({vector_from(end.at("force")), vector_from(end.at("torque"))});

@@ -5,6 +5,7 @@
 #include "wunderlich/scene/cursor.hpp"
 #include "wunderlich/scene/drive.hpp"
 #include "wunderlich/scene/mover.hpp"
+#include "wunderlich/scene/start.hpp"
 #include "wunderlich/solver/implicit/implicit.hpp"
 
 namespace wunderlich::scene {
@@ -24,8 +25,15 @@ solver::PathProblem problem_of(const Scene& scene, double time) {
   return solver::make_path(motion_ribbon(scene, time), surroundings, options);
 }
 
+/// What the summary says of the steps so far; numbers, for the checkpoint.
+struct Findings {
+  double impulses = 0;   ///< steps that Euler's scheme took
+  double touching = 0;   ///< points of the strip that feel a solid
+  double nearest = 1e9;  ///< smallest distance to a solid [m]
+};
+
 template <class Visit>
-void visit_all(double& impulses, implicit::State& state, const Visit& visit) {
+void visit_all(Findings& findings, implicit::State& state, const Visit& visit) {
   const auto whole = [&](int& number) {
     double real = number;
     visit(real);
@@ -34,7 +42,7 @@ void visit_all(double& impulses, implicit::State& state, const Visit& visit) {
   const auto vectors = [&](auto& list) {
     for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
   };
-  visit(impulses);
+  visit(findings.impulses), visit(findings.touching), visit(findings.nearest);
   auto& p = state.points;
   for (auto* list : {&p.x, &p.v, &p.a, &p.acceleration, &p.x_before, &p.v_before}) vectors(*list);
   auto& base = state.before.base;
@@ -53,6 +61,7 @@ class ImplicitMover : public Mover {
   explicit ImplicitMover(const Scene& scene) : scene_(scene), problem_(problem_of(scene, 0)) {}
 
   void start(const geometry::State& shape) override {
+    expect_clear(problem_.ribbon, problem_.surroundings, geometry::chain_of(problem_.ribbon, shape));
     state_ = implicit::start(problem_, scene_.solver.implicit, shape, scene_.initial.spin, work_);
     shape_ = implicit::shape_of(problem_, state_);
   }
@@ -61,8 +70,12 @@ class ImplicitMover : public Mover {
     const Stopwatch watch;
     const implicit::StepReport report = implicit::step(problem_, scene_.solver.implicit, t1, halvings, state_, work_);
     recording.add_phase_time("minimise", watch.seconds());
-    impulses_ += report.inelastic ? 1 : 0;
-    if (report.accepted) shape_ = implicit::shape_of(problem_, state_);
+    if (report.accepted) {
+      findings_.impulses += report.inelastic ? 1 : 0;
+      findings_.nearest = std::min(findings_.nearest, report.nearest);
+      findings_.touching = report.touching;
+      shape_ = implicit::shape_of(problem_, state_);
+    }
     return {report.accepted, report.iterations, report.failure};
   }
 
@@ -80,10 +93,14 @@ class ImplicitMover : public Mover {
     return implicit::kinetic_energy(problem_.ribbon, scene_.solver.implicit.kinetic, state_.points,
                                     state_.path.chain.eta);
   }
-  void add_warnings(Summary& summary) const override {
-    if (impulses_ == 0) return;
+  void add_findings(Summary& summary) const override {
+    if (!problem_.surroundings.obstacles.empty()) {
+      const double nearest = findings_.nearest;
+      summary.contact = ContactSummary{static_cast<int>(findings_.touching), std::max(0.0, -nearest), nearest};
+    }
+    if (findings_.impulses == 0) return;
     summary.warnings.push_back(
-        "impulses were taken up without a rebound, in " + text_of(impulses_) +
+        "impulses were taken up without a rebound, in " + text_of(findings_.impulses) +
         " steps: a support starts at once, or the strip comes taut, folds or hits a solid within a step");
   }
 
@@ -91,8 +108,8 @@ class ImplicitMover : public Mover {
     std::vector<double> out = pack_cursor(state_.path);
     out.insert(out.begin(), {state_.path.t, static_cast<double>(out.size())});
     implicit::State state = state_;
-    double impulses = impulses_;
-    visit_all(impulses, state, [&](double number) { out.push_back(number); });
+    Findings findings = findings_;
+    visit_all(findings, state, [&](double number) { out.push_back(number); });
     return out;
   }
 
@@ -106,10 +123,10 @@ class ImplicitMover : public Mover {
     implicit::resize(implicit::point_count(problem_.ribbon, scene_.solver.implicit.kinetic), state_.points);
     state_.before = state_.path.chain;
     std::size_t size = 0;
-    visit_all(impulses_, state_, [&](double) { ++size; });
+    visit_all(findings_, state_, [&](double) { ++size; });
     if (static_cast<std::ptrdiff_t>(size) != numbers.end() - end) broken();
     auto next = end;
-    visit_all(impulses_, state_, [&](double& number) { number = *next++; });
+    visit_all(findings_, state_, [&](double& number) { number = *next++; });
     const bool fits = state_.level >= 0 && state_.level < implicit::kDampingLevels && state_.calm >= 0;
     if (!fits || state_.path.phase != solver::Phase::load) broken();
     shape_ = implicit::shape_of(problem_, state_);
@@ -121,7 +138,7 @@ class ImplicitMover : public Mover {
   implicit::State state_;
   implicit::Workspace work_;
   geometry::State shape_;
-  double impulses_ = 0;  ///< steps that Euler's scheme took
+  Findings findings_;
 };
 
 }  // namespace

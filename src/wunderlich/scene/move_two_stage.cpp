@@ -71,7 +71,7 @@ class TwoStageMover : public Mover {
   const geometry::State& shape() const override { return state_.shape; }
   double kinetic_energy() const override { return energy::kinetic_value(ribbon_, state_.shape); }
 
-  void add_warnings(Summary& summary) const override {
+  void add_findings(Summary& summary) const override {
     if (counters_.exceeded > 0) {
       summary.warnings.push_back("the step of " + text_of(scene_.solver.time_step) +
                                  " s is beyond the stability bound of " + text_of(stable_step_) +

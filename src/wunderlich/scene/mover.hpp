@@ -32,7 +32,7 @@ class Mover {
   virtual const geometry::Ribbon& ribbon() const = 0;
   virtual const geometry::State& shape() const = 0;
   virtual double kinetic_energy() const = 0;  ///< [J]
-  virtual void add_warnings(Summary& summary) const = 0;
+  virtual void add_findings(Summary& summary) const = 0;
   /// The method's own state as numbers, and back; throws InputError if they do not fit.
   virtual std::vector<double> pack() const = 0;
   virtual void unpack(const geometry::State& shape, const std::vector<double>& numbers) = 0;

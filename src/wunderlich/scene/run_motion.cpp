@@ -208,7 +208,7 @@ RunResult run_motion(const Scene& scene, const Observer& observer, const Progres
       result.outcome == Outcome::not_converged ? motion.failure + " (at " + text_of(motion.time()) + " s)" : "";
   result.summary.timing =
       motion.recording.finished(static_cast<int>(motion.taken), static_cast<int>(motion.iterations));
-  motion.mover->add_warnings(result.summary);
+  motion.mover->add_findings(result.summary);
   result.progress = {std::move(motion.recording.records), motion.cursor()};
   return result;
 }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
-#include "wunderlich/geometry/chain.hpp"
+#include <fmt/format.h>
+
+#include "wunderlich/base/error.hpp"
 #include "wunderlich/scene/recording.hpp"
+#include "wunderlich/solver/chain_contact.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
@@ -140,6 +143,24 @@ Start start_of(const Scene& scene, const Ribbon& ribbon) {
   start.shape.time = 0;
   set_velocity(scene.initial, ribbon, start.shape);
   return start;
+}
+
+void expect_clear(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings,
+                  const geometry::Chain& chain) {
+  geometry::Kinematics kinematics;
+  geometry::forward_kinematics(ribbon, chain, kinematics);
+  for (std::size_t i = 0; i < surroundings.obstacles.size(); ++i) {
+    constraint::Surroundings one = surroundings;
+    one.obstacles = {surroundings.obstacles[i]};
+    solver::ContactProblem contact;
+    solver::place_solids(ribbon, one, 0, contact);
+    std::vector<solver::ContactPoint> points;
+    solver::find_points(ribbon, contact, chain, kinematics, points);
+    const double distance = solver::smallest_distance(contact, points);
+    if (distance > contact.margin) continue;
+    throw InputError(fmt::format("obstacles.{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it", i,
+                                 std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin));
+  }
 }
 
 }  // namespace wunderlich::scene

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "wunderlich/geometry/state.hpp"
+#include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/scene/scene.hpp"
 
 namespace wunderlich::scene {
@@ -15,5 +15,9 @@ struct Start {
 
 /// The state of `scene.initial` on the strip as it is held at time 0.
 Start start_of(const Scene& scene, const geometry::Ribbon& ribbon);
+
+/// Throws InputError where the strip starts inside a solid, or so near that nothing is left between them.
+void expect_clear(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings,
+                  const geometry::Chain& chain);
 
 }  // namespace wunderlich::scene

@@ -214,10 +214,15 @@ bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from
   return true;
 }
 
-double smallest_gap(const std::vector<ContactPoint>& points) {
+double smallest_distance(const ContactProblem& problem, const std::vector<ContactPoint>& points) {
   double least = kInfinity;
-  for (const ContactPoint& point : points) least = std::min(least, point.gap);
+  for (const ContactPoint& point : points) least = std::min(least, point.gap + problem.margin);
   return least;
+}
+
+int contact_count(const ContactProblem& problem, const std::vector<ContactPoint>& points) {
+  const auto touches = [&](const ContactPoint& point) { return point.gap < problem.distance; };
+  return static_cast<int>(std::count_if(points.begin(), points.end(), touches));
 }
 
 double solid_work(const Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& before,

@@ -63,8 +63,11 @@ double contact_energy(const geometry::Ribbon& ribbon, const ContactProblem& prob
 /// lose more than nine tenths of its gap within the barrier's distance.
 bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from, const std::vector<ContactPoint>& to);
 
-/// Smallest gap [m]; infinite without solids.
-double smallest_gap(const std::vector<ContactPoint>& points);
+/// Distance of the nearest point to a solid beyond the thickness [m]; infinite without solids.
+double smallest_distance(const ContactProblem& problem, const std::vector<ContactPoint>& points);
+
+/// Points that feel a solid.
+int contact_count(const ContactProblem& problem, const std::vector<ContactPoint>& points);
 
 /// Work that moving solids do on the strip when they go from one place to the other while the strip's points are
 /// `before`, then `after`: with the force before in the share 1 - `late`, after in the share `late` [J].

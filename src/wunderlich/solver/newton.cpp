@@ -169,6 +169,7 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
 /// Value of the iterate, with contact.
 void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chain& current, NewtonWorkspace& work) {
   work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
+  work.contacts.clear();
   if (problem.contact.empty()) return;
   find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
   work.value.contact = contact_energy(ribbon, problem.contact, work.contacts);

@@ -6,7 +6,7 @@
 
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/solver/chain_ties.hpp"
-#include "wunderlich/solver/implicit/conserve.hpp"
+#include "wunderlich/solver/implicit/balance.hpp"
 #include "wunderlich/solver/load_step.hpp"
 #include "wunderlich/solver/path_step.hpp"
 
@@ -106,36 +106,6 @@ void set_problem(const PathProblem& path, const Options& options, const Scheme& 
   problem.before = options.viscosity > 0 ? &state.path.chain : nullptr;
 }
 
-/// Weight of the forces at a step's end.
-double late_share(const Scheme& scheme) { return scheme.kind == Integrator::bdf2 ? 0.5 : 1 - scheme.alpha_f; }
-
-/// Work of what moves the supports during the step, by the reactions before and after with the weights that the scheme
-/// itself gives to forces at either end: Euler takes those after for the whole step.
-double support_work(const ChainProblem& problem, const Scheme& scheme, const State& state, const Chain& start,
-                    const Workspace& work, const std::vector<double>& residuals) {
-  const double after = late_share(scheme);
-  double sum = 0;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const double before = i < state.path.multipliers.size() ? state.path.multipliers[i] : work.multipliers[i];
-    sum += ((1 - after) * before + after * work.multipliers[i]) * residuals[i];
-  }
-  math::Vec6 way;
-  way << start.base.position - state.path.chain.base.position,
-      math::log_map(start.base.frame * state.path.chain.base.frame.conjugate());
-  const math::Vec6 reaction = (1 - after) * state.base_reaction + after * work.newton.sweep.base_gradient;
-  for (int c = 0; c < 6; ++c) {
-    if (problem.base_fixed[static_cast<std::size_t>(c)]) sum += reaction[c] * way[c];
-  }
-  return sum;
-}
-
-/// Work of the dead forces from x0 to x1.
-double load_work(const ChainProblem& problem, const std::vector<Vec3>& x0, const std::vector<Vec3>& x1) {
-  double sum = 0;
-  for (std::size_t i = 0; i < problem.force.size(); ++i) sum += problem.force[i].dot(x1[i] - x0[i]);
-  return sum;
-}
-
 NewtonOptions newton_options(const Options& options) {
   NewtonOptions newton;
   newton.inertial = true;
@@ -181,37 +151,6 @@ std::string why(const NewtonReport& report, double t, double h) {
       break;
   }
   return text + "energy grows";
-}
-
-/// Points that supports move.
-void find_held(const Ribbon& ribbon, const Options& options, const ChainProblem& problem,
-               std::vector<std::size_t>& held) {
-  held.clear();
-  const auto n = static_cast<std::size_t>(ribbon.segments);
-  const auto& fixed = problem.base_fixed;
-  if (fixed[0] && fixed[1] && fixed[2]) held.push_back(0);
-  for (const Hold& hold : problem.holds) {
-    const auto node = static_cast<std::size_t>(hold.node);
-    if (hold.position[0] && hold.position[1] && hold.position[2]) held.push_back(node);
-    const bool turns = hold.orientation == constraint::Orientation::full && node < n;
-    if (turns && options.kinetic != KineticEnergy::centerline) held.push_back(n + 1 + node);
-  }
-}
-
-/// Corrects the velocities of the step under way so that the energy has not grown.
-void keep_conserved(const Ribbon& ribbon, const Options& options, double growth, State& state, Workspace& work) {
-  const ChainProblem& problem = work.problem;
-  const auto& fixed = problem.base_fixed;
-  const bool held = !problem.holds.empty() || std::any_of(fixed.begin(), fixed.end(), [](bool is) { return is; });
-  const bool pushed =
-      !problem.loads.empty() || options.drag_tangent > 0 || options.drag_normal > 0 ||
-      std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return !f.isZero(0); });
-  Conserved wanted;
-  wanted.kinetic = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta) - growth + state.missing;
-  if (!held && !pushed) wanted.momentum = &state.momentum;
-  find_held(ribbon, options, problem, work.conserve.held);
-  state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.conserve, work.points);
-  if (wanted.momentum == nullptr) state.momentum = momentum(ribbon, options.kinetic, work.points, work.trial.eta);
 }
 
 int damp_more(const Options& options, int level) {
@@ -326,6 +265,27 @@ void change_supports(const PathProblem& before, const PathProblem& after, State&
   note_frames(after, state.path);
 }
 
+namespace {
+
+/// The problem of a step, and the prediction that Newton's method starts from.
+void prepare(const PathProblem& path, const Options& options, const Scheme& scheme, double t1, const State& state,
+             Workspace& work) {
+  const Ribbon& ribbon = path.ribbon;
+  predict(ribbon, state, scheme.h, work.trial);
+  // Between two held places a flat strip has no direction to go in: Newton's method starts beside it.
+  if (path.surroundings.supports.size() > 1 && is_flat(work.trial, ribbon.length, kFlat)) seed(ribbon, work.trial);
+  set_problem(path, options, scheme, t1, state, work.trial, work.problem);
+  work.multipliers = state.path.multipliers;
+  work.multipliers.resize(row_count(work.problem), 0.0);
+  // How far the supports have moved: the rows' residuals before the step.
+  work.start = state.path.chain;
+  work.start.base = work.trial.base;
+  if (!work.multipliers.empty()) geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
+  constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
+}
+
+}  // namespace
+
 StepReport step(const PathProblem& path, const Options& options, double t1, int halvings, State& state,
                 Workspace& work) {
   const Ribbon& ribbon = path.ribbon;
@@ -336,17 +296,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
   double growth = 0;  // of the energy, beyond the work of loads and supports
   for (;; state.level = damp_more(options, state.level), ++report.repeats) {
     const Scheme scheme = scheme_of(options, state, h);
-    predict(ribbon, state, h, work.trial);
-    // Between two held places a flat strip has no direction to go in: Newton's method starts beside it.
-    if (path.surroundings.supports.size() > 1 && is_flat(work.trial, ribbon.length, kFlat)) seed(ribbon, work.trial);
-    set_problem(path, options, scheme, t1, state, work.trial, work.problem);
-    work.multipliers = state.path.multipliers;
-    work.multipliers.resize(row_count(work.problem), 0.0);
-    // How far the supports have moved: the rows' residuals before the step.
-    work.start = state.path.chain;
-    work.start.base = work.trial.base;
-    if (!work.multipliers.empty()) geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
-    constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
+    prepare(path, options, scheme, t1, state, work);
     if (!start_clear(path, state, h, work)) {
       state.level = level;
       report.failure = "a solid runs into the strip within a step of " + std::to_string(h) + " s";
@@ -365,10 +315,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
-    growth =
-        elastic1 - state.elastic + kinetic1 - kinetic0 - load_work(work.problem, state.points.x, work.x) -
-        support_work(work.problem, scheme, state, work.start, work, work.residuals) -
-        solid_work(ribbon, work.solids, work.before, work.problem.contact, work.newton.contacts, late_share(scheme));
+    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(path, scheme, state, work);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state, halvings)) continue;
@@ -385,8 +332,9 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     state.elastic = elastic1;
     break;
   }
-  // The work of loads without a potential is not known.
-  if (options.conserve && work.problem.loads.empty()) keep_conserved(ribbon, options, growth, state, work);
+  // The work of loads without a potential is not known, and what friction takes is gone.
+  const bool known = work.problem.loads.empty() && work.problem.contact.friction.empty();
+  if (options.conserve && known) keep_conserved(ribbon, options, growth, state, work);
   state.calm = report.repeats > 0 ? 0 : std::min(state.calm, kCalmSteps) + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
   state.before = state.path.chain;
@@ -400,6 +348,8 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
   state.path.iterations += report.iterations;
   if (carries_frames(path)) note_frames(path, state.path);
   drag(ribbon, options, h, work.newton.kinematics, state.points);
+  report.nearest = std::min(report.nearest, smallest_distance(work.problem.contact, work.newton.contacts));
+  report.touching = contact_count(work.problem.contact, work.newton.contacts);
   report.inelastic = state.level == kInelastic;
   if (report.inelastic) {  // the accelerations of an impulse are nothing to go on with
     state.level = level;

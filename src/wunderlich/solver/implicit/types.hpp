@@ -46,6 +46,8 @@ struct StepReport {
   int iterations = 0;      ///< of all
   int repeats = 0;         ///< minimisations thrown away, because the energy grew
   bool inelastic = false;  ///< taken by Euler: an impulse, of a support that starts or a strip that comes taut
+  double nearest = 1e9;    ///< distance of the nearest point to a solid [m]
+  int touching = 0;        ///< points that feel a solid
   double error = 0;        ///< estimate of the local error over the length
 };
 
