@@ -259,12 +259,7 @@ class Sweep {
     value.gradient1 = before->grad_a[1];
     couple(c00, c01, gain, 0, share * before->grad_a[0], value, solved_columns(i));
     couple(c10, c11, gain, 1, share * before->grad_a[1], value, solved_columns(i));
-    if (surface) {
-      value.uv[1] += four(felt.block<1, 3>(6, 0).transpose());
-      value.ut[1] += four(felt.block<1, 3>(6, 3).transpose(), share * surface->gradient[6]);
-      value.z11 += felt(6, 6);
-      value.gradient1 += surface->gradient[6];
-    }
+    if (surface) add_surface_before(*surface, felt, share, value);
     return true;
   }
 

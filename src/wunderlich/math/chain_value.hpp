@@ -104,6 +104,14 @@ inline void add_surface(const SurfaceTerm& term, const Mat8& hessian, double sha
   value.torque += four(term.gradient.segment<3>(3));
 }
 
+/// That, once u_1 of the joint after has been eliminated.
+inline void add_surface_before(const SurfaceTerm& term, const Mat8& hessian, double share, Value& value) {
+  value.uv[1] += four(hessian.block<1, 3>(6, 0).transpose());
+  value.ut[1] += four(hessian.block<1, 3>(6, 3).transpose(), share * term.gradient[6]);
+  value.z11 += hessian(6, 6);
+  value.gradient1 += term.gradient[6];
+}
+
 /// A pose term's or row's share at its link; row k is constraint column k.
 template <int Q>
 void add_pose_parts(const ChainSystem& system, int node, Cursor& next, Value& value, Columns<Q>& columns) {

@@ -99,9 +99,13 @@ std::vector<Obstacle> build_obstacles(const Cell& root) {
   if (count(list) > 0 && method_of(root) == Method::two_stage) {
     fail(list, "not with `solver.method: two-stage`; use `implicit`");
   }
+  const bool equilibrium = method_of(root) == Method::equilibrium;
   std::vector<Obstacle> obstacles;
   for (std::size_t i = 0; i < count(list); ++i) {
     obstacles.push_back(obstacle_of(element(list, i), child(root, "contact")));
+    if (equilibrium && obstacles.back().friction > 0) {
+      fail(element(list, i), "friction has no effect with `solver.method: equilibrium`; use `implicit`");
+    }
   }
   return obstacles;
 }

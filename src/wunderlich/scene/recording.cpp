@@ -76,7 +76,8 @@ Summary summary_of(const Scene& scene, const geometry::Ribbon& ribbon, const Rec
     summary.warnings.push_back("some hinges turn by more than 0.5 rad; more segments would resolve the curvature");
   }
   if (scene.ribbon.closure == geometry::Closure::loop && std::abs(scene.ribbon.half_twists) >= 2) {
-    summary.warnings.push_back("contact is not modelled: a loop with this many half twists may pass through itself");
+    summary.warnings.push_back(
+        "self-contact is not modelled: a loop with this many half twists may pass through itself");
   }
   return summary;
 }

@@ -127,7 +127,7 @@ std::string lost_turns(const PathProblem& path, const PathState& state, const St
   const double link = geometry::topology(solver::ribbon_of(path, state), shape).link;
   if (std::abs(link - wanted) < 0.1) return "";
   return "the band closed with linking number " + std::to_string(link) + " instead of " + std::to_string(wanted) +
-         ": it passed through itself on the way (contact is not modelled)";
+         ": it passed through itself on the way (self-contact is not modelled)";
 }
 
 RunResult run_path(const Scene& scene, const Observer& observer, const Progress* resume) {

@@ -158,8 +158,9 @@ void expect_clear(const geometry::Ribbon& ribbon, const constraint::Surroundings
     solver::find_points(ribbon, contact, chain, kinematics, points);
     const double distance = solver::smallest_distance(contact, points);
     if (distance > contact.margin) continue;
-    throw InputError(fmt::format("obstacles.{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it", i,
-                                 std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin));
+    throw InputError(
+        fmt::format("obstacles.{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it", i,
+                    std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin));
   }
 }
 
