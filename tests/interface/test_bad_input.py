@@ -76,8 +76,15 @@ class BadInput(ProgramTest):
     def test_formats(self):
         self.expect_refused("run", "strip.yaml", "--formats", "vtp,glp", says=["glp", "glb"])
 
+    def test_obstacles_where_they_cannot_be(self):
+        solid = STRIP[: STRIP.index("solver:")] + "solver: {method: %s}\nobstacles: [{shape: sphere, radius: 0.1%s}]\n"
+        self.refused(solid % ("two-stage", ""), "obstacles", "use `implicit`")
+        self.refused(solid % ("equilibrium", ", friction: 0.2"), "obstacles.0", "use `implicit`")
+        for method in ("implicit", "equilibrium"):
+            self.refused(solid % (method, ""), "obstacles.0: the strip starts", "inside")
+
     def test_keys_of_later_versions(self):
-        self.refused(STRIP + "contact: {self: true}\n", "bad.yaml:7:1: contact", "not supported yet by this version")
+        self.refused(STRIP + "contact: {self: true}\n", "bad.yaml:7:11: contact.self", "not supported yet by this version")
 
     def test_output_folder_that_cannot_be_written(self):
         self.write("file", "something")

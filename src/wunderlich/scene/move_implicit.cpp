@@ -5,7 +5,6 @@
 #include "wunderlich/scene/cursor.hpp"
 #include "wunderlich/scene/drive.hpp"
 #include "wunderlich/scene/mover.hpp"
-#include "wunderlich/scene/start.hpp"
 #include "wunderlich/solver/implicit/implicit.hpp"
 
 namespace wunderlich::scene {
@@ -61,7 +60,6 @@ class ImplicitMover : public Mover {
   explicit ImplicitMover(const Scene& scene) : scene_(scene), problem_(problem_of(scene, 0)) {}
 
   void start(const geometry::State& shape) override {
-    expect_clear(problem_.ribbon, problem_.surroundings, geometry::chain_of(problem_.ribbon, shape));
     state_ = implicit::start(problem_, scene_.solver.implicit, shape, scene_.initial.spin, work_);
     shape_ = implicit::shape_of(problem_, state_);
   }

@@ -6,7 +6,6 @@
 #include "wunderlich/geometry/topology.hpp"
 #include "wunderlich/scene/cursor.hpp"
 #include "wunderlich/scene/recording.hpp"
-#include "wunderlich/scene/start.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
@@ -137,7 +136,6 @@ RunResult run_path(const Scene& scene, const Observer& observer, const Progress*
     run.state = unpack_cursor(run.path, resume->cursor);
   } else {
     run.state = solver::start_path(run.path);
-    expect_clear(solver::ribbon_of(run.path, run.state), run.path.surroundings, run.state.chain);
     run.record({}, 0);
   }
   RunResult result;

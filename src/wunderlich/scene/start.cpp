@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "wunderlich/base/error.hpp"
+#include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/scene/recording.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
@@ -145,8 +145,25 @@ Start start_of(const Scene& scene, const Ribbon& ribbon) {
   return start;
 }
 
-void expect_clear(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings,
-                  const geometry::Chain& chain) {
+namespace {
+
+constexpr std::size_t kMostPairs = 20000;  // of obstacles and segments: half a gigabyte of points
+
+}  // namespace
+
+std::optional<Blocked> blocked_start(const Scene& scene) {
+  const constraint::Surroundings& surroundings = scene.surroundings;
+  const bool known = scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
+                     scene.initial.shape == InitialShape::coil;
+  const std::size_t pairs = surroundings.obstacles.size() * static_cast<std::size_t>(scene.ribbon.segments);
+  if (pairs > kMostPairs) {
+    return Blocked{0, fmt::format("{} pairs of obstacles and segments; at most {} fit into memory", pairs, kMostPairs)};
+  }
+  if (surroundings.obstacles.empty() || !known) return std::nullopt;
+  const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
+  const geometry::Chain chain = scene.solver.method == Method::equilibrium
+                                    ? solver::start_path(solver::make_path(ribbon, surroundings, {})).chain
+                                    : geometry::chain_of(ribbon, start_of(scene, ribbon).shape);
   geometry::Kinematics kinematics;
   geometry::forward_kinematics(ribbon, chain, kinematics);
   for (std::size_t i = 0; i < surroundings.obstacles.size(); ++i) {
@@ -158,10 +175,10 @@ void expect_clear(const geometry::Ribbon& ribbon, const constraint::Surroundings
     solver::find_points(ribbon, contact, chain, kinematics, points);
     const double distance = solver::smallest_distance(contact, points);
     if (distance > contact.margin) continue;
-    throw InputError(
-        fmt::format("obstacles.{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it", i,
-                    std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin));
+    return Blocked{i, fmt::format("the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
+                                  std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin)};
   }
+  return std::nullopt;
 }
 
 }  // namespace wunderlich::scene

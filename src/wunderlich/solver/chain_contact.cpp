@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kStiffness = 100;   // barrier over weight or bending: light contact, few iterations
 constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
-constexpr int kMostCells = 16;       // across a strip, and along a segment
+constexpr int kMostCells = 12;       // across a strip, and along a segment
 constexpr double kSlipSpeed = 1e-3;  // below which friction is less than Coulomb's [m/s]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
