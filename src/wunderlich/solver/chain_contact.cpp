@@ -182,10 +182,24 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
     const Pose& pose = problem.solids[i].pose;
     const Pose own;
     const Mat3 to_own = pose.frame.conjugate().toRotationMatrix();
+    contact::Distance middle{0, Vec3::Zero(), Mat3::Zero()};  // of the segment under way
+    Vec3 center = Vec3::Zero();
+    const double kept = problem.thickness + problem.margin;
+    const auto each = static_cast<std::size_t>((problem.along + 1) * (problem.across + 1));
     visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
+      if (index % each == 0) {  // its first point
+        center = to_own * (0.5 * (k.r[s] + k.r[s + 1]) - pose.position);
+        middle = contact::distance(shape, own, center);
+      }
       const Vec3 local = to_own * (k.r[s + 1] + arm(ribbon, chain, k, s, at) - pose.position);
+      // Distance to a convex solid lies above its tangent plane: what is far by that need not be looked at.
+      const double least = middle.value + middle.normal.dot(local - center) - kept;
+      if (least > problem.distance) {
+        points[index] = {local, middle.normal, least, Mat3::Zero()};
+        return;
+      }
       const contact::Distance d = contact::distance(shape, own, local);
-      points[index] = {local, d.normal, d.value - problem.thickness - problem.margin, d.hessian};
+      points[index] = {local, d.normal, d.value - kept, d.hessian};
     });
   }
 }

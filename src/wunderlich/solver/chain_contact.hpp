@@ -43,7 +43,7 @@ struct ContactProblem {
 struct ContactPoint {
   Vec3 at;       ///< [m]
   Vec3 normal;   ///< of the solid there, outward
-  double gap;    ///< distance beyond thickness and margin [m]
+  double gap;    ///< distance beyond thickness and margin; of far points a bound from below, with its gradient [m]
   Mat3 hessian;  ///< of the distance
 };
 
