@@ -4,12 +4,14 @@
 
 #include "commands.hpp"
 #include "wunderlich/scene/read.hpp"
+#include "wunderlich/scene/run.hpp"
 #include "wunderlich/scene/schema.hpp"
 
 namespace wunderlich::app {
 
 int check_command(const std::string& scene_name, const std::vector<std::string>& set) {
   const scene::Scene scene = scene::read_scene(scene_name, set);
+  scene::check_start(scene, scene_name);
   const bool loop = scene.ribbon.closure == geometry::Closure::loop;
   std::cout << fmt::format("{}: ok: {}, {} segments, l/w = {:g}, {} supports, {} loads\n", scene.name,
                            loop ? "a loop" : "an open strip", scene.ribbon.segments,

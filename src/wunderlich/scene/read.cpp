@@ -10,7 +10,6 @@
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/scene/build.hpp"
-#include "wunderlich/scene/start.hpp"
 #include "wunderlich/scene/text.hpp"
 
 namespace wunderlich::scene {
@@ -87,8 +86,6 @@ Scene read_scene_text(const std::string& text, const std::string& source, const 
   scene.solver = build_solver(root, scene.ribbon, last_key_time(scene.surroundings));
   scene.output = build_output(root, scene.ribbon);
   scene.resolved = to_yaml(document);
-  if (const auto blocked = blocked_start(scene))
-    fail(element(child(root, "obstacles"), blocked->obstacle), blocked->why);
   return scene;
 }
 

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "wunderlich/base/error.hpp"
 #include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/scene/recording.hpp"
+#include "wunderlich/scene/run.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
 
@@ -151,15 +153,17 @@ constexpr std::size_t kMostPairs = 20000;  // of obstacles and segments: half a 
 
 }  // namespace
 
-std::optional<Blocked> blocked_start(const Scene& scene) {
+void check_start(const Scene& scene, const std::string& source) {
   const constraint::Surroundings& surroundings = scene.surroundings;
-  const bool known = scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
-                     scene.initial.shape == InitialShape::coil;
   const std::size_t pairs = surroundings.obstacles.size() * static_cast<std::size_t>(scene.ribbon.segments);
   if (pairs > kMostPairs) {
-    return Blocked{0, fmt::format("{} pairs of obstacles and segments; at most {} fit into memory", pairs, kMostPairs)};
+    throw InputError(fmt::format("{}: obstacles: {} pairs of obstacles and segments; at most {} fit into memory",
+                                 source, pairs, kMostPairs));
   }
-  if (surroundings.obstacles.empty() || !known) return std::nullopt;
+  // Other starts are not known before the run.
+  const bool known = scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
+                     scene.initial.shape == InitialShape::coil;
+  if (surroundings.obstacles.empty() || !known) return;
   const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
   const geometry::Chain chain = scene.solver.method == Method::equilibrium
                                     ? solver::start_path(solver::make_path(ribbon, surroundings, {})).chain
@@ -175,10 +179,10 @@ std::optional<Blocked> blocked_start(const Scene& scene) {
     solver::find_points(ribbon, contact, chain, kinematics, points);
     const double distance = solver::smallest_distance(contact, points);
     if (distance > contact.margin) continue;
-    return Blocked{i, fmt::format("the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
-                                  std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin)};
+    throw InputError(
+        fmt::format("{}: obstacles.{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
+                    source, i, std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin));
   }
-  return std::nullopt;
 }
 
 }  // namespace wunderlich::scene
