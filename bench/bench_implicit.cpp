@@ -145,7 +145,7 @@ struct Parts {
   }
   const geometry::Ribbon& ribbon() const { return motion.path.ribbon; }
   void kinematics() { geometry::forward_kinematics(ribbon(), chain, work.kinematics); }
-  void linearise() { solver::linearise(ribbon(), problem, chain, work.kinematics, multipliers, work.system); }
+  void linearise() { solver::linearise(ribbon(), problem, chain, work.kinematics, multipliers, {}, work.system); }
   bool sweep() { return math::chain_step(work.system, work.sweep, work.step); }
   double objective() const {
     return solver::objective(ribbon(), problem, chain, work.kinematics, work.kinematics).total();

@@ -47,7 +47,7 @@ struct Setup {
     linearise();
   }
   void kinematics() { geometry::forward_kinematics(ribbon, chain, work.kinematics); }
-  void linearise() { solver::linearise(ribbon, problem, chain, work.kinematics, multipliers, work.system); }
+  void linearise() { solver::linearise(ribbon, problem, chain, work.kinematics, multipliers, {}, work.system); }
   bool sweep() { return math::chain_step(work.system, work.sweep, work.step); }
 };
 

@@ -11,7 +11,7 @@ namespace wunderlich::app {
 
 int check_command(const std::string& scene_name, const std::vector<std::string>& set) {
   const scene::Scene scene = scene::read_scene(scene_name, set);
-  scene::check_start(scene, scene_name);
+  scene::check_start(scene);
   const bool loop = scene.ribbon.closure == geometry::Closure::loop;
   std::cout << fmt::format("{}: ok: {}, {} segments, l/w = {:g}, {} supports, {} loads\n", scene.name,
                            loop ? "a loop" : "an open strip", scene.ribbon.segments,

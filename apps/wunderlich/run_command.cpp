@@ -111,7 +111,7 @@ int run_command(const RunArguments& arguments) {
       arguments.out.empty() ? default_folder(arguments.scene) : std::filesystem::path(arguments.out);
   const Start start =
       arguments.resume ? resumed_start(arguments, folder) : Start{scene::read_scene(arguments.scene, arguments.set)};
-  if (!arguments.resume) scene::check_start(start.scene, arguments.scene);
+  if (!arguments.resume) scene::check_start(start.scene);
   const std::vector<io::Format> formats = formats_of(arguments, start.scene);
   if (start.outcome != scene::Outcome::interrupted) return report_finished(start, folder, arguments.quiet);
   io::require_writable(folder);

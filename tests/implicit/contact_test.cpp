@@ -90,6 +90,21 @@ TEST(Contact, ADrapeStaysOutAtAnyStep) {
   }
 }
 
+/// What the solids exert on the strip [N].
+Vec3 push_of(const solver::PathProblem& path, double t, const geometry::Chain& chain) {
+  solver::ContactProblem contact;
+  solver::place_solids(path.ribbon, path.surroundings, t, contact);
+  geometry::Kinematics k;
+  geometry::forward_kinematics(path.ribbon, chain, k);
+  std::vector<solver::ContactPoint> points;
+  solver::find_points(path.ribbon, contact, chain, k, points);
+  math::ChainSystem system;
+  solver::add_contact(path.ribbon, contact, chain, k, points, system);
+  Vec3 push = Vec3::Zero();
+  for (const math::SurfaceTerm& term : system.surfaces) push -= term.gradient.head<3>();
+  return push;
+}
+
 /// At rest on a plane the barrier's forces add up to the weight.
 TEST(Contact, ReactionIsTheWeight) {
   Motion m = drop(1e-2, 20, {solid(contact::HalfSpace{}, along_x(0, 0))}, along_x(0, 9.5e-4), Vec3(0, 0, -kGravity));
@@ -97,20 +112,32 @@ TEST(Contact, ReactionIsTheWeight) {
   m.options.integrator = implicit::Integrator::euler;
   start(geometry::straight_chain(m.path.ribbon, along_x(0, 9.5e-4)), m);
   for (int i = 1; i <= 400; ++i) ASSERT_TRUE(move_to(5e-3 * i, m)) << m.failure;
-  solver::ContactProblem contact;
-  solver::place_solids(m.path.ribbon, m.path.surroundings, m.state.path.t, contact);
-  geometry::Kinematics k;
-  geometry::forward_kinematics(m.path.ribbon, m.state.path.chain, k);
-  std::vector<solver::ContactPoint> points;
-  solver::find_points(m.path.ribbon, contact, m.state.path.chain, k, points);
-  math::ChainSystem system;
-  solver::add_contact(m.path.ribbon, contact, m.state.path.chain, k, points, system);
-  Vec3 push = Vec3::Zero();
-  for (const math::SurfaceTerm& term : system.surfaces) push -= term.gradient.head<3>();
+  const Vec3 push = push_of(m.path, m.state.path.t, m.state.path.chain);
   const double weight = 0.3 * 0.03 * 0.1 * kGravity;
   show("reaction over weight, less 1", std::abs(push.z() / weight - 1), 1e-6);
   EXPECT_NEAR(push.z() / weight, 1, 1e-6);
   EXPECT_LT(push.head<2>().norm() / weight, 1e-6);
+}
+
+/// Statics: a strip leaves its clamp level and lies down on a plane below.
+TEST(Contact, AClampAndASolidShareTheWeight) {
+  geometry::RibbonSpec spec = sheet(2e-5, true);
+  constraint::Surroundings surroundings;
+  surroundings.gravity = Vec3(0, 0, -kGravity);
+  surroundings.supports = {clamp(0, along_x(0, 0))};
+  surroundings.obstacles = {solid(contact::HalfSpace{}, {Vec3(0, 0, -0.02), Quat::Identity()})};
+  surroundings.contact.distance = spec.width / 30;
+  const PathEnd end = run_path(spec, surroundings, {});
+  ASSERT_TRUE(end.done) << end.failure;
+  solver::NewtonWorkspace work;
+  const solver::EndReactions reactions = solver::end_reactions(end.path, end.at, work);
+  const Vec3 push = push_of(end.path, end.at.t, end.at.chain);
+  const double weight = spec.length * spec.width * spec.area_density * kGravity;
+  EXPECT_GT(push.z() / weight, 0.3);
+  EXPECT_GT(reactions.force[0].z() / weight, 0.1);
+  const double error = ((reactions.force[0] + push) / weight - Vec3::UnitZ()).norm();
+  show("clamp and solid together over weight, less 1", error, 1e-6);
+  EXPECT_LT(error, 1e-6);
 }
 
 /// Speed along the slope, down it, after 0.5 s on a plane of slope tan(alpha) with friction.

@@ -43,7 +43,7 @@ int negative_modes(const Ribbon& ribbon, Chain chain, double load) {
   math::ChainSystem system;
   math::ChainWorkspace work;
   math::ChainStep step;
-  linearise(ribbon, loaded(ribbon, load), chain, k, {}, system);
+  linearise(ribbon, loaded(ribbon, load), chain, k, {}, {}, system);
   EXPECT_TRUE(chain_step(system, work, step));
   return step.negative_pivots;
 }

@@ -132,10 +132,9 @@ double contact_value(const Ribbon& ribbon, const ChainProblem& problem, const Ch
 
 void linearise_all(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                    const std::vector<double>& multipliers, math::ChainSystem& system) {
-  linearise(ribbon, problem, chain, k, multipliers, system);
   std::vector<solver::ContactPoint> points;
   find_points(ribbon, problem.contact, chain, k, points);
-  add_contact(ribbon, problem.contact, chain, k, points, system);
+  linearise(ribbon, problem, chain, k, multipliers, points, system);
 }
 
 Chain moved(const Chain& chain, const VectorXd& x) {
@@ -302,7 +301,7 @@ TEST(TorsionChart, MakesTheBendingEnergyConvex) {
     Kinematics k;
     geometry::forward_kinematics(ribbon, chain, k);
     math::ChainSystem system;
-    linearise(ribbon, problem, chain, k, {}, system);
+    linearise(ribbon, problem, chain, k, {}, {}, system);
     solver::use_torsion_chart(ribbon, chain, system);
     const math::ChainLink &before = system.links[2], &link = system.links[3];
     Mat2 hessian = before.hess_bb + link.hess_aa;

@@ -77,7 +77,7 @@ struct Linearised {
   void linearise_here() {
     geometry::Kinematics k;
     geometry::forward_kinematics(end.ribbon(), chain, k);
-    linearise(end.ribbon(), problem, chain, k, multipliers, system);
+    linearise(end.ribbon(), problem, chain, k, multipliers, {}, system);
   }
 
   /// One full Newton step; returns the largest change of a fold angle. The path stops where the energy sees no

@@ -93,19 +93,20 @@ Local local_distance(const Box& box, const Vec3& p) {
 
 }  // namespace
 
-Distance distance(const Shape& shape, const Pose& pose, const Vec3& point) {
-  const Mat3 rotation = pose.frame.toRotationMatrix();
-  const Vec3 p = rotation.transpose() * (point - pose.position);
-  const Local local = std::visit([&](const auto& solid) { return local_distance(solid, p); }, shape);
-  Distance result{local.value, rotation * local.normal, Mat3::Zero()};
+Distance distance(const Shape& shape, const Vec3& point) {
+  const Local local = std::visit([&](const auto& solid) { return local_distance(solid, point); }, shape);
+  Distance result{local.value, local.normal, Mat3::Zero()};
   if (local.curvature != 0) {
     result.hessian = local.curvature * (Mat3::Identity() - result.normal * result.normal.transpose());
   }
-  if (local.excess != 0) {
-    const Vec3 direction = rotation * local.direction;
-    result.hessian += local.excess * direction * direction.transpose();
-  }
+  if (local.excess != 0) result.hessian += local.excess * local.direction * local.direction.transpose();
   return result;
+}
+
+Distance distance(const Shape& shape, const Pose& pose, const Vec3& point) {
+  const Mat3 rotation = pose.frame.toRotationMatrix();
+  const Distance own = distance(shape, Vec3(rotation.transpose() * (point - pose.position)));
+  return {own.value, rotation * own.normal, rotation * own.hessian * rotation.transpose()};
 }
 
 }  // namespace wunderlich::contact

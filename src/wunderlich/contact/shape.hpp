@@ -37,7 +37,10 @@ struct Distance {
 
 /// Outside it is the Euclidean distance. Where the nearest point of the surface is not unique (on axes, in centers, on
 /// edges) normal and Hessian are those of one side; all numbers are finite everywhere.
-/// `pose` is where the solid's own frame stands.
+/// The point is given in the solid's own frame, and so is the result.
+Distance distance(const Shape& shape, const Vec3& point);
+
+/// The same in space; `pose` is where the solid's own frame stands.
 Distance distance(const Shape& shape, const Pose& pose, const Vec3& point);
 
 }  // namespace wunderlich::contact

@@ -15,8 +15,8 @@ geometry::RibbonSpec build_ribbon(const Cell& root);
 /// other or ask for more than the strip's length.
 constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSpec& ribbon);
 
-/// Solids in the strip's way, and how it touches them.
-std::vector<constraint::Obstacle> build_obstacles(const Cell& root);
+/// Solids in the way of a strip of so many segments, and how it touches them.
+std::vector<constraint::Obstacle> build_obstacles(const Cell& root, int segments);
 constraint::Contact build_contact(const Cell& root, double width);
 
 /// Solver options; `last_key` is the time of the last keyframe, 0 without any.

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -10,6 +12,8 @@ namespace wunderlich::scene {
 namespace {
 
 using constraint::Obstacle;
+
+constexpr std::size_t kMostPairs = 20000;  // of obstacles and segments: half a gigabyte of points
 
 const AxisNames box_axes{"axis", "side", "[1, 0, 0]"};
 
@@ -61,25 +65,16 @@ void turn_to(const Cell& cell, const std::string& shape, Stand& stand) {
 }
 
 constraint::Motion motion_of(const Cell& cell, const std::string& shape) {
-  constraint::Motion motion;
   Stand stand;
   turn_to(cell, shape, stand);
   constraint::PoseKey key;
   key.pose = {vector(child(cell, "position")), stand.frame};
   key.turn = number(child(cell, "turn"));
-  const Cell keyframes = child(cell, "keyframes");
-  for (std::size_t i = 0; i < count(keyframes); ++i) {
-    const Cell keyframe = element(keyframes, i);
-    key.time = next_time(keyframe, motion.keys);
-    if (const Cell c = child(keyframe, "position"); c.value != nullptr) key.pose.position = vector(c);
-    if (const Cell c = child(keyframe, "turn"); c.value != nullptr) key.turn = number(c);
+  return motion_from(cell, key, axis_name(shape), [&](const Cell& keyframe, constraint::PoseKey& next) {
+    if (const Cell c = child(keyframe, "turn"); c.value != nullptr) next.turn = number(c);
     turn_to(keyframe, shape, stand);
-    key.pose.frame = stand.frame;
-    motion.keys.push_back(key);
-    check_half_turn(keyframe, motion.keys, axis_name(shape));
-  }
-  if (motion.keys.empty()) motion.keys.push_back(key);
-  return motion;
+    next.pose.frame = stand.frame;
+  });
 }
 
 Obstacle obstacle_of(const Cell& cell, const Cell& contact) {
@@ -94,10 +89,14 @@ Obstacle obstacle_of(const Cell& cell, const Cell& contact) {
 
 }  // namespace
 
-std::vector<Obstacle> build_obstacles(const Cell& root) {
+std::vector<Obstacle> build_obstacles(const Cell& root, int segments) {
   const Cell list = child(root, "obstacles");
   if (count(list) > 0 && method_of(root) == Method::two_stage) {
     fail(list, "not with `solver.method: two-stage`; use `implicit`");
+  }
+  const std::size_t pairs = count(list) * static_cast<std::size_t>(segments);
+  if (pairs > kMostPairs) {
+    fail(list, fmt::format("{} pairs of obstacles and segments; at most {} fit into memory", pairs, kMostPairs));
   }
   const bool equilibrium = method_of(root) == Method::equilibrium;
   std::vector<Obstacle> obstacles;

@@ -103,7 +103,6 @@ std::array<bool, 3> held_axes(const Cell& free_cell) {
 }
 
 constraint::Motion motion_of(const Cell& cell, const Vec3& rest_position, bool with_frame) {
-  constraint::Motion motion;
   PoseKey key;
   const auto position = child(cell, "position");
   key.pose.position = position.value != nullptr ? vector(position) : rest_position;
@@ -113,22 +112,13 @@ constraint::Motion motion_of(const Cell& cell, const Vec3& rest_position, bool w
     key.pose.frame = frame_of(axes, clamp_axes, cell);
     key.turn = number(child(cell, "turn"));
   }
-  const Cell keyframes = child(cell, "keyframes");
-  for (std::size_t i = 0; i < count(keyframes); ++i) {
-    const Cell keyframe = element(keyframes, i);
-    key.time = next_time(keyframe, motion.keys);
-    if (const Cell c = child(keyframe, "position"); c.value != nullptr) key.pose.position = vector(c);
-    if (with_frame) {
-      if (const Cell c = child(keyframe, "tangent"); c.value != nullptr) axes.d3 = direction(c);
-      if (const Cell c = child(keyframe, "normal"); c.value != nullptr) axes.d1 = direction(c);
-      if (const Cell c = child(keyframe, "turn"); c.value != nullptr) key.turn = number(c);
-      key.pose.frame = frame_of(axes, clamp_axes, keyframe);
-    }
-    motion.keys.push_back(key);
-    check_half_turn(keyframe, motion.keys, clamp_axes.d3);
-  }
-  if (motion.keys.empty()) motion.keys.push_back(key);
-  return motion;
+  return motion_from(cell, key, clamp_axes.d3, [&](const Cell& keyframe, PoseKey& next) {
+    if (!with_frame) return;
+    if (const Cell c = child(keyframe, "tangent"); c.value != nullptr) axes.d3 = direction(c);
+    if (const Cell c = child(keyframe, "normal"); c.value != nullptr) axes.d1 = direction(c);
+    if (const Cell c = child(keyframe, "turn"); c.value != nullptr) next.turn = number(c);
+    next.pose.frame = frame_of(axes, clamp_axes, keyframe);
+  });
 }
 
 PlacedSupport clamp_of(const Cell& cell, const Strip& strip) {
@@ -214,7 +204,7 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
     const bool at_end = load.node == 0 || load.node == ribbon.segments;
     if (turns && at_end && ribbon.closure == geometry::Closure::open) ribbon.clamped[load.node == 0 ? 0 : 1] = true;
   }
-  surroundings.obstacles = build_obstacles(root);
+  surroundings.obstacles = build_obstacles(root, ribbon.segments);
   surroundings.contact = build_contact(root, ribbon.width);
   if (surroundings.supports.empty() && !moves) {
     const std::string problem = "nothing holds the strip against it; add a clamp or a pin";

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "wunderlich/constraint/support.hpp"
-#include "wunderlich/scene/schema.hpp"
+#include "wunderlich/scene/build.hpp"
 
 namespace wunderlich::scene {
 
@@ -44,5 +44,24 @@ double next_time(const Cell& keyframe, const std::vector<Key>& keys) {
 
 /// Throws where the last key's frame stands half a turn from the one before; `axis` is what a file calls d3.
 void check_half_turn(const Cell& keyframe, const std::vector<constraint::PoseKey>& keys, const std::string& axis);
+
+/// The keyframes below `cell`, each as the one before it, at first `key`, but for what it says; `read_frame(keyframe,
+/// key)` takes what it says of the frame. Without keyframes `key` alone.
+template <typename ReadFrame>
+constraint::Motion motion_from(const Cell& cell, constraint::PoseKey key, const std::string& axis,
+                               const ReadFrame& read_frame) {
+  constraint::Motion motion;
+  const Cell keyframes = child(cell, "keyframes");
+  for (std::size_t i = 0; i < count(keyframes); ++i) {
+    const Cell keyframe = element(keyframes, i);
+    key.time = next_time(keyframe, motion.keys);
+    if (const Cell c = child(keyframe, "position"); c.value != nullptr) key.pose.position = vector(c);
+    read_frame(keyframe, key);
+    motion.keys.push_back(key);
+    check_half_turn(keyframe, motion.keys, axis);
+  }
+  if (motion.keys.empty()) motion.keys.push_back(key);
+  return motion;
+}
 
 }  // namespace wunderlich::scene

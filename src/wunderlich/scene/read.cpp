@@ -66,6 +66,15 @@ double last_key_time(const constraint::Surroundings& surroundings) {
   return last;
 }
 
+std::vector<std::string> places_of(const Cell& list) {
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < count(list); ++i) {
+    const Cell cell = element(list, i);
+    places.push_back(described(cell.place) + ": " + cell.path);
+  }
+  return places;
+}
+
 }  // namespace
 
 Scene read_scene_text(const std::string& text, const std::string& source, const std::vector<std::string>& overrides) {
@@ -82,6 +91,7 @@ Scene read_scene_text(const std::string& text, const std::string& source, const 
   scene.title = title.value == nullptr ? scene.name : title.value->text;
   scene.ribbon = build_ribbon(root);
   scene.surroundings = build_surroundings(root, scene.ribbon);
+  scene.obstacle_places = places_of(child(root, "obstacles"));
   scene.initial = build_initial(root, scene.ribbon);
   scene.solver = build_solver(root, scene.ribbon, last_key_time(scene.surroundings));
   scene.output = build_output(root, scene.ribbon);

@@ -40,9 +40,9 @@ struct RunStatus {
 };
 using Observer = std::function<bool(const RunStatus&)>;
 
-/// Throws InputError where the strip starts inside a solid; `source` is the scene's file. Not part of reading a scene:
+/// Throws InputError where the strip starts inside a solid. Not part of reading a scene:
 /// it takes a look at the strip.
-void check_start(const Scene& scene, const std::string& source);
+void check_start(const Scene& scene);
 
 /// Runs from the start, or goes on from `resume`. Does no I/O. Deterministic: a resumed run ends bit for bit
 /// as an uninterrupted one.

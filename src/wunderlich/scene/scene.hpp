@@ -66,6 +66,7 @@ struct Scene {
   std::string resolved;  ///< the same after all overrides: what `--resume` runs again
   geometry::RibbonSpec ribbon;
   constraint::Surroundings surroundings;
+  std::vector<std::string> obstacle_places;  ///< where each was written, `file:line:column: key`, for messages
   InitialState initial;
   SolverOptions solver;
   OutputOptions output;

@@ -147,19 +147,8 @@ Start start_of(const Scene& scene, const Ribbon& ribbon) {
   return start;
 }
 
-namespace {
-
-constexpr std::size_t kMostPairs = 20000;  // of obstacles and segments: half a gigabyte of points
-
-}  // namespace
-
-void check_start(const Scene& scene, const std::string& source) {
+void check_start(const Scene& scene) {
   const constraint::Surroundings& surroundings = scene.surroundings;
-  const std::size_t pairs = surroundings.obstacles.size() * static_cast<std::size_t>(scene.ribbon.segments);
-  if (pairs > kMostPairs) {
-    throw InputError(fmt::format("{}: obstacles: {} pairs of obstacles and segments; at most {} fit into memory",
-                                 source, pairs, kMostPairs));
-  }
   // Other starts are not known before the run.
   const bool known = scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
                      scene.initial.shape == InitialShape::coil;
@@ -179,9 +168,9 @@ void check_start(const Scene& scene, const std::string& source) {
     solver::find_points(ribbon, contact, chain, kinematics, points);
     const double distance = solver::smallest_distance(contact, points);
     if (distance > contact.margin) continue;
-    throw InputError(
-        fmt::format("{}: obstacles.{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
-                    source, i, std::abs(distance), distance < 0 ? "inside" : "from it", contact.margin));
+    throw InputError(fmt::format("{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
+                                 scene.obstacle_places[i], std::abs(distance), distance < 0 ? "inside" : "from it",
+                                 contact.margin));
   }
 }
 

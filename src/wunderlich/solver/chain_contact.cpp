@@ -102,14 +102,12 @@ void add_point(const Lever& lever, const Vec3& normal, const Mat3& curvature, co
 /// The sweep's term of a segment; made where there is none.
 math::SurfaceTerm& term_of(std::size_t segment, math::ChainSystem& system) {
   const auto node = static_cast<int>(segment);
-  const auto later = [](const math::SurfaceTerm& a, int b) { return a.node > b; };
-  auto place = std::lower_bound(system.surfaces.begin(), system.surfaces.end(), node, later);
-  if (place == system.surfaces.end() || place->node != node) {
-    math::SurfaceTerm term;
-    term.node = node;
-    place = system.surfaces.insert(place, term);
-  }
-  return *place;
+  const auto is_later = [&](const math::SurfaceTerm& term) { return term.node > node; };
+  const auto place = std::partition_point(system.surfaces.begin(), system.surfaces.end(), is_later);
+  if (place != system.surfaces.end() && place->node == node) return *place;
+  math::SurfaceTerm term;
+  term.node = node;
+  return *system.surfaces.insert(place, term);
 }
 
 /// Way along the solid's surface and the point's arm.
@@ -180,7 +178,6 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     const contact::Shape& shape = problem.solids[i].shape;
     const Pose& pose = problem.solids[i].pose;
-    const Pose own;
     const Mat3 to_own = pose.frame.conjugate().toRotationMatrix();
     contact::Distance middle{0, Vec3::Zero(), Mat3::Zero()};  // of the segment under way
     Vec3 center = Vec3::Zero();
@@ -189,7 +186,7 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
     visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
       if (index % each == 0) {  // its first point
         center = to_own * (0.5 * (k.r[s] + k.r[s + 1]) - pose.position);
-        middle = contact::distance(shape, own, center);
+        middle = contact::distance(shape, center);
       }
       const Vec3 local = to_own * (k.r[s + 1] + arm(ribbon, chain, k, s, at) - pose.position);
       // Distance to a convex solid lies above its tangent plane: what is far by that need not be looked at.
@@ -198,7 +195,7 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
         points[index] = {local, middle.normal, least, Mat3::Zero()};
         return;
       }
-      const contact::Distance d = contact::distance(shape, own, local);
+      const contact::Distance d = contact::distance(shape, local);
       points[index] = {local, d.normal, d.value - kept, d.hessian};
     });
   }

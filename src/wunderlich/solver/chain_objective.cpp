@@ -207,7 +207,7 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
 }
 
 void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-               const std::vector<double>& multipliers, ChainSystem& system) {
+               const std::vector<double>& multipliers, const std::vector<ContactPoint>& contacts, ChainSystem& system) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
@@ -232,6 +232,7 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   }
   add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);
+  add_contact(ribbon, problem.contact, chain, k, contacts, system);
 }
 
 void use_torsion_chart(const Ribbon& ribbon, const Chain& chain, ChainSystem& system) {

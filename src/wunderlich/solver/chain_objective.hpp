@@ -82,10 +82,10 @@ ObjectiveValue objective(const geometry::Ribbon& ribbon, const ChainProblem& pro
 void constraint_residuals(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
                           const geometry::Kinematics& kinematics, std::vector<double>& residuals);
 
-/// Fills `system` around the chain; `multipliers` are the current ones, one a row.
+/// Fills `system` around the chain; `multipliers` are the current ones, one a row, `contacts` the chain's points.
 void linearise(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
                const geometry::Kinematics& kinematics, const std::vector<double>& multipliers,
-               math::ChainSystem& system);
+               const std::vector<ContactPoint>& contacts, math::ChainSystem& system);
 
 /// Takes the Hessian of `system` along straight lines in curvature and torsion, kappa and kappa eta, for the step. In
 /// these coordinates the bending energy is convex for every eta, in kappa and eta only for |eta| < 0.45, and fold

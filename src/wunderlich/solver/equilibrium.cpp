@@ -254,7 +254,8 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
   EndReactions reactions;
   if (state.multipliers.size() != row_count(problem)) return reactions;
   geometry::forward_kinematics(ribbon, chain, work.kinematics);
-  linearise(ribbon, problem, chain, work.kinematics, state.multipliers, work.system);
+  find_points(ribbon, problem.contact, chain, work.kinematics, work.contacts);
+  linearise(ribbon, problem, chain, work.kinematics, state.multipliers, work.contacts, work.system);
   if (!math::chain_step(work.system, work.sweep, work.step)) return reactions;
   // A held base answers with the gradient of everything beyond it; a held pose with minus its multipliers.
   if (base_is_held(path)) {

@@ -330,8 +330,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
-    linearise(ribbon, problem, current, work.kinematics, lambda, work.system);
-    add_contact(ribbon, problem.contact, current, work.kinematics, work.contacts, work.system);
+    linearise(ribbon, problem, current, work.kinematics, lambda, work.contacts, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
     if (inertial) shift = 0;

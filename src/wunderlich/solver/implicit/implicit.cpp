@@ -231,10 +231,9 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   geometry::forward_kinematics(path.ribbon, state.path.chain, work.kinematics);
   const ObjectiveValue now = objective(path.ribbon, work.problem, state.path.chain, work.kinematics, work.kinematics);
   state.elastic = now.elastic + now.barrier;
-  if (!work.problem.contact.empty()) {
-    find_points(path.ribbon, work.problem.contact, state.path.chain, work.kinematics, work.before);
-    state.elastic += contact_energy(path.ribbon, work.problem.contact, work.before);
-  }
+  place_solids(path.ribbon, path.surroundings, state.path.t, work.solids);
+  find_points(path.ribbon, work.solids, state.path.chain, work.kinematics, work.before);
+  state.elastic += contact_energy(path.ribbon, work.solids, work.before);
   state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   state.base_reaction.setZero();
   work.multipliers.assign(row_count(work.problem), 0.0);
