@@ -1,5 +1,7 @@
 #include "math/dense_chain.hpp"
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Dense>
 
 #include "wunderlich/math/rotation.hpp"
@@ -164,6 +166,19 @@ VectorXd stacked(const math::ChainStep& step) {
   out.head<6>() = step.base;
   for (std::size_t i = 0; i < step.u.size(); ++i) out.segment<2>(6 + 2 * static_cast<Index>(i)) = step.u[i];
   return out;
+}
+
+void expect_same(const ChainSystem& system, const DenseStep& dense, double tolerance) {
+  math::ChainWorkspace work;
+  math::ChainStep step;
+  ASSERT_TRUE(chain_step(system, work, step));
+  const VectorXd x = stacked(step);
+  const VectorXd multiplier =
+      Eigen::Map<const VectorXd>(step.multiplier.data() + system.probe_count(), dense.multiplier.size());
+  EXPECT_GT(dense.x.norm(), 0);
+  EXPECT_LE((x - dense.x).norm(), tolerance * (1 + dense.x.norm()));
+  EXPECT_LE((multiplier - dense.multiplier).norm(), tolerance * (1 + dense.multiplier.norm()));
+  EXPECT_EQ(step.negative_pivots, dense.negative);
 }
 
 }  // namespace wunderlich::testing

@@ -28,6 +28,9 @@ struct DenseStep {
 
 DenseStep solve(const DenseChain& chain);
 
+/// That chain_step finds it: step, multipliers, and negative modes.
+void expect_same(const math::ChainSystem& system, const DenseStep& dense, double tolerance);
+
 /// The sweep's step as one vector.
 Eigen::VectorXd stacked(const math::ChainStep& step);
 

@@ -57,6 +57,35 @@ double row_value(const MovingChain& chain, const Poses& poses, const ChainRow& r
          row.first_u.dot(chain.u[0] - chain.first[0]);
 }
 
+/// Where a point is, from its node.
+Vec3 arm(const MovingChain& chain, const Poses& poses, int node, double v) {
+  const auto i = static_cast<std::size_t>(node);
+  return poses.after[i] * Vec3(0, v, v * chain.u[i][1]);
+}
+
+/// What pulls at its ends.
+Vec3 pull(const MovingChain& chain, const Poses& poses, const Spring& spring) {
+  const Vec3 a = poses.r[static_cast<std::size_t>(spring.a)] + arm(chain, poses, spring.a, spring.va);
+  const Vec3 b = poses.r[static_cast<std::size_t>(spring.b)] + arm(chain, poses, spring.b, spring.vb);
+  return a - b - spring.rest;
+}
+
+void add_springs(const MovingChain& chain, const Poses& poses, ChainSystem& system) {
+  for (const Spring& spring : chain.springs) {
+    const Vec3 force = pull(chain, poses, spring);
+    const auto point = [&](int node, double v, const Vec3& gradient) {
+      const Quat& frame = poses.after[static_cast<std::size_t>(node)];
+      system.points.push_back({node, arm(chain, poses, node, v), v * (frame * Vec3::UnitZ()), gradient});
+      return static_cast<int>(system.points.size()) - 1;
+    };
+    const int a = point(spring.a, spring.va, force), b = point(spring.b, spring.vb, -force);
+    const Mat3 unit = Mat3::Identity();
+    system.couplings.push_back({a, a, unit, Mat3::Zero()});
+    system.couplings.push_back({b, b, 0.25 * unit, 0.75 * unit});  // in two parts, of which the second carries forces
+    system.couplings.push_back({a, b, -unit, Mat3::Zero()});
+  }
+}
+
 Vec4 pair(const MovingChain& chain, std::size_t i) {
   Vec4 out;
   out << chain.u[i], chain.u[i + 1];
@@ -109,6 +138,16 @@ MovingChain random_moving_chain(int links, std::mt19937& random) {
   return chain;
 }
 
+void add_random_springs(int count, std::mt19937& random, MovingChain& chain) {
+  std::normal_distribution<double> normal;
+  const int nodes = static_cast<int>(chain.u.size());
+  for (int k = 0; k < count; ++k) {
+    const int a = static_cast<int>(random() % static_cast<unsigned>(nodes));
+    const int b = static_cast<int>(random() % static_cast<unsigned>(nodes));
+    chain.springs.push_back({a, b, normal(random), normal(random), Vec3::NullaryExpr([&] { return normal(random); })});
+  }
+}
+
 MovingChain moved(const MovingChain& chain, const VectorXd& x) {
   MovingChain out = chain;
   out.base.position += x.head<3>();
@@ -131,6 +170,7 @@ double value(const MovingChain& chain) {
     const Vec6 change = pose_change(chain, poses, static_cast<std::size_t>(term.node));
     sum += term.gradient.dot(change) + 0.5 * change.dot(term.hessian * change);
   }
+  for (const Spring& spring : chain.springs) sum += 0.5 * pull(chain, poses, spring).squaredNorm();
   for (const ChainRow& row : chain.rows) sum += row.multiplier * row_value(chain, poses, row);
   return sum;
 }
@@ -174,6 +214,7 @@ ChainSystem system_at(const MovingChain& chain) {
     term.gradient = on_increments(change, term.gradient + term.hessian * change);
     system.pose_terms.push_back(term);
   }
+  add_springs(chain, poses, system);
   return system;
 }
 
@@ -185,6 +226,22 @@ VectorXd gradient(const MovingChain& chain) {
   out.head<6>() = work.base_gradient;
   for (std::size_t i = 0; i < chain.u.size(); ++i) {
     out.segment<2>(6 + 2 * static_cast<Eigen::Index>(i)) = work.gradient[i];
+  }
+  return out;
+}
+
+Eigen::MatrixXd difference_hessian(const MovingChain& chain) {
+  const Eigen::Index size = 6 + 2 * static_cast<Eigen::Index>(chain.u.size());
+  Eigen::MatrixXd out(size, size);
+  constexpr double kStep = 1e-3;
+  const auto at = [&](Eigen::Index k, double h) {
+    const VectorXd x = h * VectorXd::Unit(size, k);
+    VectorXd g = gradient(moved(chain, x));
+    g.segment<3>(3) = (math::left_jacobian(x.segment<3>(3)).transpose() * g.segment<3>(3)).eval();
+    return g;
+  };
+  for (Eigen::Index k = 0; k < size; ++k) {
+    out.col(k) = (8 * (at(k, kStep) - at(k, -kStep)) - (at(k, 2 * kStep) - at(k, -2 * kStep))) / (12 * kStep);
   }
   return out;
 }

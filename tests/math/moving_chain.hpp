@@ -9,6 +9,13 @@
 
 namespace wunderlich::testing {
 
+/// A spring between two points of the strip, at v across it: half of the square of their way apart less `rest`.
+struct Spring {
+  int a, b;       ///< nodes
+  double va, vb;  ///< [m]
+  Vec3 rest;
+};
+
 /// Springs from every node to an anchor, link energies quadratic in u, quadratic pose terms, and multipliers times
 /// rows, rotations being measured by their vector from `frame`.
 struct MovingChain {
@@ -21,6 +28,7 @@ struct MovingChain {
   std::vector<Mat4> link_hessian;
   std::vector<math::ChainRow> rows;  ///< residuals are those at `origin`
   std::vector<math::PoseTerm> terms;
+  std::vector<Spring> springs;
   std::vector<Vec3> origin;  ///< node positions and frames that rows and pose terms are measured from
   std::vector<Quat> frame;
   std::vector<Vec2> first;  ///< u there
@@ -29,6 +37,9 @@ struct MovingChain {
 
 /// A random one, rows and terms included, measured from where it is.
 MovingChain random_moving_chain(int links, std::mt19937& random);
+
+/// Springs between its links, which only the sparse factorisation knows.
+void add_random_springs(int count, std::mt19937& random, MovingChain& chain);
 
 /// The chain moved by x = (v_0, theta_base, u_0, ..., u_N).
 MovingChain moved(const MovingChain& chain, const Eigen::VectorXd& x);
@@ -40,5 +51,8 @@ math::ChainSystem system_at(const MovingChain& chain);
 
 /// The exact gradient of `value` by the sweep, in x at 0.
 Eigen::VectorXd gradient(const MovingChain& chain);
+
+/// The Hessian of `value`, by differences of fourth order of the exact gradient, brought into the chart at the start.
+Eigen::MatrixXd difference_hessian(const MovingChain& chain);
 
 }  // namespace wunderlich::testing

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "wunderlich/math/chain_sparse.hpp"
 #include "wunderlich/math/chain_value.hpp"
 
 namespace wunderlich::math {
@@ -374,6 +375,7 @@ bool run_sweep(const ChainSystem& system, ChainWorkspace& work, ChainStep& step,
 bool chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step) {
   const std::size_t count = system.links.size();
   assert(count >= 2);
+  if (!system.couplings.empty()) return sparse_chain_step(system, work, step);
   const auto probes = system.rows.begin() + static_cast<std::ptrdiff_t>(system.probe_count());
   const auto later = [](const ChainRow& a, const ChainRow& b) { return a.node > b.node; };
   assert(std::is_sorted(system.rows.begin(), probes, later) && std::is_sorted(probes, system.rows.end(), later));

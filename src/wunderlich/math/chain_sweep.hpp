@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "wunderlich/base/types.hpp"
@@ -74,6 +75,22 @@ struct SurfaceTerm {
   Mat8 geometric = Mat8::Zero();  ///< further Hessian, of what carries forces
 };
 
+/// A point of the strip that feels another: it moves by v_i + theta_i x arm + slant u_1 of joint i.
+struct SurfacePoint {
+  int node;  ///< i
+  Vec3 arm;  ///< from node i
+  Vec3 slant;
+  Vec3 gradient = Vec3::Zero();  ///< of all that it feels
+};
+
+/// Second derivatives of the objective in the places of two points: half of a symmetric whole, once for each pair of
+/// points, and for a point with itself.
+struct PointCoupling {
+  int a, b;  ///< points
+  Mat3 hessian = Mat3::Zero();
+  Mat3 geometric = Mat3::Zero();  ///< further Hessian, of what carries forces
+};
+
 /// The turn of the joint by du, about the axis it has.
 inline Four turn_of(const ChainLink& link, const Vec2& du) {
   return all(du[0]) * link.axis[0] + all(du[1]) * link.axis[1];
@@ -81,16 +98,18 @@ inline Four turn_of(const ChainLink& link, const Vec2& du) {
 
 /// One linearised problem.
 struct ChainSystem {
-  std::vector<ChainLink> links;        ///< N + 1 entries; the last has no link, only joint and node
-  std::vector<ChainRow> rows;          ///< probes, then constraints; each sorted by decreasing node
-  std::vector<PoseTerm> pose_terms;    ///< sorted by decreasing node
-  std::vector<SurfaceTerm> surfaces;   ///< at most one a link, sorted by decreasing node
-  std::vector<TurnTerm> turns;         ///< (N) or none, of the links with a span
-  Eigen::MatrixXd follower;            ///< (probes x probes) unsymmetric part of the Hessian, in the
-                                       ///< coordinates of as many probe rows: loads without a potential
-  std::array<bool, 6> base_fixed{};    ///< v (3), theta (3) of the base
-  std::array<double, 2> base_shift{};  ///< added to the diagonal of the base: position, rotation
-  std::array<double, 2> shift{};       ///< added to the diagonal of every 2 x 2 pivot
+  std::vector<ChainLink> links;          ///< N + 1 entries; the last has no link, only joint and node
+  std::vector<ChainRow> rows;            ///< probes, then constraints; each sorted by decreasing node
+  std::vector<PoseTerm> pose_terms;      ///< sorted by decreasing node
+  std::vector<SurfaceTerm> surfaces;     ///< at most one a link, sorted by decreasing node
+  std::vector<SurfacePoint> points;      ///< in any order
+  std::vector<PointCoupling> couplings;  ///< if any, the step is found by a sparse factorisation instead of the sweep
+  std::vector<TurnTerm> turns;           ///< (N) or none, of the links with a span
+  Eigen::MatrixXd follower;              ///< (probes x probes) unsymmetric part of the Hessian, in the
+                                         ///< coordinates of as many probe rows: loads without a potential
+  std::array<bool, 6> base_fixed{};      ///< v (3), theta (3) of the base
+  std::array<double, 2> base_shift{};    ///< added to the diagonal of the base: position, rotation
+  std::array<double, 2> shift{};         ///< added to the diagonal of every 2 x 2 pivot
   std::size_t probe_count() const { return static_cast<std::size_t>(follower.rows()); }
   const std::vector<Vec2>* only_load = nullptr;  ///< (N + 1) if set, the gradient in u for which to solve instead of
                                                  ///< the objective's own: the response to a load
@@ -112,11 +131,13 @@ struct ChainStep {
 };
 
 /// Buffers; reused between calls without allocation once they have their size.
+struct SparseWorkspace;
 struct ChainWorkspace {
   std::vector<ChainGain> gains;
-  std::vector<Four> columns;   ///< per node, 2 rows: Z^-1 times the constraint columns, four to a vector
-  std::vector<Vec2> gradient;  ///< exact gradient of objective + multipliers * rows in u_i
-  Vec6 base_gradient;          ///< the same in (v_0, theta_base)
+  std::vector<Four> columns;                ///< per node, 2 rows: Z^-1 times the constraint columns, four to a vector
+  std::vector<Vec2> gradient;               ///< exact gradient of objective + multipliers * rows in u_i
+  Vec6 base_gradient;                       ///< the same in (v_0, theta_base)
+  std::shared_ptr<SparseWorkspace> sparse;  ///< only where links feel one another
 };
 
 /// Solves for the step. Returns false if a pivot or the Schur complement is singular (the step is then not

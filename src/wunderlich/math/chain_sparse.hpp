@@ -1,0 +1,67 @@
+/// Newton's step on a chain some of whose links feel one another, by a sparse factorisation. Internal to math/.
+///
+/// Poses stay unknowns beside the joints' coordinates, and what a joint and a span do to them are constraints with
+/// multipliers: the matrix is a band with a few blocks off it, one for each pair of links that touch.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "wunderlich/math/chain_sweep.hpp"
+
+namespace wunderlich::math {
+
+/// A symmetric sparse matrix that is filled again and again in the same order of entries.
+class RepeatedMatrix {
+ public:
+  /// Starts anew: the entries that follow are noted, and make the pattern.
+  void note(int size);
+  /// Starts with all zeros; the entries that follow are those noted.
+  void repeat();
+  void add(int row, int column, double value);
+  /// Ends the filling after `note`.
+  void settle();
+  const Eigen::SparseMatrix<double>& lower() const { return lower_; }
+
+ private:
+  bool noting_ = false;
+  int size_ = 0;
+  std::size_t next_ = 0;
+  std::vector<Eigen::Triplet<double>> entries_;
+  std::vector<int> slot_;  ///< where each entry goes among the values
+  Eigen::SparseMatrix<double> lower_;
+};
+
+/// Unknowns of one node in the matrix; -1 where there are none.
+struct NodePlaces {
+  int v = -1;      ///< displacement of the node
+  int theta = -1;  ///< turn of its link
+  int u = -1;      ///< the joint's two coordinates
+  int turn = -1;   ///< multipliers of theta_i = theta_{i-1} + axes u_i
+  int move = -1;   ///< multipliers of v_i = v_{i-1} + theta_{i-1} x span_{i-1}
+};
+
+/// Adjoint wrench of the chain at one node: what its joint and the span before it carry.
+struct NodeWrench {
+  Vec3 torque;      ///< on link i at its node, everything beyond included
+  Vec3 force;       ///< on node i
+  Vec2 gradient;    ///< exact, in u_i
+  double pull = 0;  ///< the part of it in u_1 that the torque exerts
+};
+
+struct SparseWorkspace {
+  std::vector<int> key;  ///< what the pattern depends on
+  std::vector<NodePlaces> places;
+  int theta_base = -1, first_row = -1, size = 0;
+  std::vector<char> fixed;
+  std::vector<NodeWrench> wrench;
+  RepeatedMatrix matrix;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor;
+  Eigen::VectorXd right, solution, rest;
+};
+
+/// As chain_step, for systems with couplings; no followers.
+bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step);
+
+}  // namespace wunderlich::math
