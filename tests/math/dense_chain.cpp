@@ -66,16 +66,13 @@ void add_rows(const ChainSystem& system, const std::vector<MatrixXd>& poses, Den
   out.follower = probe.transpose() * system.follower * probe;
 }
 
-/// Curved lines in u_1 bend the Hessian by the gradient, here without what the torque on the joint is of it.
+/// Curved lines in u_1 bend the Hessian by the gradient, here without what torques on joints and forces on surfaces are
+/// of it.
 void add_charts(const ChainSystem& system, DenseChain& out) {
   VectorXd own = VectorXd::Zero(static_cast<Index>(system.links.size()));
   for (Index i = 0; i + 1 < own.size(); ++i) {
     own[i] += system.links[static_cast<std::size_t>(i)].grad_a[1];
     own[i + 1] += system.links[static_cast<std::size_t>(i)].grad_b[1];
-  }
-  for (const math::SurfaceTerm& term : system.surfaces) {
-    own[term.node] += term.gradient[6];
-    own[term.node + 1] += term.gradient[7];
   }
   for (const math::ChainRow& row : system.rows) {
     own[row.node] += row.multiplier * row.u[1];

@@ -132,9 +132,11 @@ double contact_value(const Ribbon& ribbon, const ChainProblem& problem, const Ch
 
 void linearise_all(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                    const std::vector<double>& multipliers, math::ChainSystem& system) {
-  std::vector<solver::ContactPoint> points;
-  find_points(ribbon, problem.contact, chain, k, points);
-  linearise(ribbon, problem, chain, k, multipliers, points, system);
+  solver::Touching touching;
+  solver::SelfSearch search;
+  find_points(ribbon, problem.contact, chain, k, touching.points);
+  if (problem.self.active()) find_pairs(ribbon, problem.self, chain, k, search, touching.self);
+  linearise(ribbon, problem, chain, k, multipliers, touching, system);
 }
 
 Chain moved(const Chain& chain, const VectorXd& x) {

@@ -73,7 +73,8 @@ struct Obstacle {
 /// How the strip and the obstacles touch.
 struct Contact {
   double distance = 0;   ///< at which forces begin [m]
-  double thickness = 0;  ///< gap that stays between the strip's middle surface and a solid [m]
+  double thickness = 0;  ///< gap that stays between the strip's middle surface and a solid, or itself [m]
+  bool self = false;     ///< does the strip feel itself
 };
 
 /// Everything imposed from outside.

@@ -136,12 +136,12 @@ void find_wrenches(const ChainSystem& system, SparseWorkspace& work, Vec6& base_
   for (const SurfaceTerm& term : system.surfaces) {
     add(term.node + 1, term.gradient.head<3>(), Vec3::Zero());
     add(term.node, Vec3::Zero(), term.gradient.segment<3>(3));
-    w[static_cast<std::size_t>(term.node)].gradient[1] += term.gradient[6];
-    w[static_cast<std::size_t>(term.node) + 1].gradient[1] += term.gradient[7];
+    w[static_cast<std::size_t>(term.node)].pull += term.gradient[6];
+    w[static_cast<std::size_t>(term.node) + 1].pull += term.gradient[7];
   }
   for (const SurfacePoint& point : system.points) {
     add(point.node, point.gradient, point.arm.cross(point.gradient));
-    w[static_cast<std::size_t>(point.node)].gradient[1] += point.slant.dot(point.gradient);
+    w[static_cast<std::size_t>(point.node)].pull += point.slant.dot(point.gradient);
   }
   for (std::size_t i = count; i-- > 0;) {
     const Vec3 b0 = vec(system.links[i].axis[0]), b1 = vec(system.links[i].axis[1]);
@@ -149,7 +149,7 @@ void find_wrenches(const ChainSystem& system, SparseWorkspace& work, Vec6& base_
       w[i].force += w[i + 1].force;
       w[i].torque += w[i + 1].torque + vec(system.links[i].span).cross(w[i + 1].force);
     }
-    w[i].pull = b1.dot(w[i].torque);
+    w[i].pull += b1.dot(w[i].torque);
     w[i].gradient += Vec2(b0.dot(w[i].torque), w[i].pull);
   }
   base_gradient.head<3>() += w[0].force;

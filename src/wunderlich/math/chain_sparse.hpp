@@ -47,7 +47,7 @@ struct NodeWrench {
   Vec3 torque;      ///< on link i at its node, everything beyond included
   Vec3 force;       ///< on node i
   Vec2 gradient;    ///< exact, in u_i
-  double pull = 0;  ///< the part of it in u_1 that the torque exerts
+  double pull = 0;  ///< the part of it in u_1 that the torque and forces on surfaces exert
 };
 
 struct SparseWorkspace {

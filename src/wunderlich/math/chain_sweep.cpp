@@ -258,6 +258,7 @@ class Sweep {
     value.z11 = before->hess_aa(1, 1) - c10 * p01 - c11 * p11;
     value.gradient0 = before->grad_a[0];
     value.gradient1 = before->grad_a[1];
+    value.pull1 = 0;
     couple(c00, c01, gain, 0, share * before->grad_a[0], value, solved_columns(i));
     couple(c10, c11, gain, 1, share * before->grad_a[1], value, solved_columns(i));
     if (surface) add_surface_before(*surface, felt, share, value);

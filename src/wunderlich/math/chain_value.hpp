@@ -42,7 +42,7 @@ struct Value {
   double z00 = 0, z01 = 0, z11 = 0;      ///< u, u
   Four force = all(0), torque = all(0);  ///< adjoint wrench: the exact gradient in the pose
   double gradient0 = 0, gradient1 = 0;   ///< exact gradient in u so far
-  double pull1 = 0;                      ///< the part of it in u_1 that the torque exerts
+  double pull1 = 0;                      ///< the part of it in u_1 that the torque and forces on surfaces exert
 };
 
 /// Where the sorted lists of pose terms, probe rows and constraint rows stand.
@@ -100,6 +100,7 @@ inline void add_surface(const SurfaceTerm& term, const Mat8& hessian, double sha
   value.ut[1] += four(hessian.block<1, 3>(7, 3).transpose(), share * term.gradient[7]);
   value.z11 += hessian(7, 7);
   value.gradient1 += term.gradient[7];
+  value.pull1 += term.gradient[7];
   value.force += four(term.gradient.head<3>());
   value.torque += four(term.gradient.segment<3>(3));
 }
@@ -110,6 +111,7 @@ inline void add_surface_before(const SurfaceTerm& term, const Mat8& hessian, dou
   value.ut[1] += four(hessian.block<1, 3>(6, 3).transpose(), share * term.gradient[6]);
   value.z11 += hessian(6, 6);
   value.gradient1 += term.gradient[6];
+  value.pull1 += term.gradient[6];
 }
 
 /// A pose term's or row's share at its link; row k is constraint column k.
@@ -157,9 +159,10 @@ void pass_joint(const ChainLink& link, bool geometric, Value& value, Columns<Q>&
   for (int c = 0; c < 2; ++c) {
     add_combination(link.axis[c], columns.row(3), columns.row(4), columns.row(5), columns.row(6 + c), columns.quads());
   }
-  value.pull1 = dot3(b1, torque);
+  const double pull1 = dot3(b1, torque);
+  value.pull1 += pull1;
   value.gradient0 += dot3(b0, torque);
-  value.gradient1 += value.pull1;
+  value.gradient1 += pull1;
   if (!geometric) return;
   value.z01 += dot3(torque, link.axis_01);
   value.z11 += dot3(torque, link.axis_11);

@@ -111,9 +111,15 @@ std::vector<Obstacle> build_obstacles(const Cell& root, int segments) {
 
 constraint::Contact build_contact(const Cell& root, double width) {
   const Cell cell = child(root, "contact");
-  if (cell.value != nullptr && count(child(root, "obstacles")) == 0) fail(cell, "has no effect without `obstacles`");
+  const Cell self = child(cell, "self");
+  if (boolean(self) && method_of(root) == Method::two_stage) {
+    fail(self, "not with `solver.method: two-stage`; use `implicit`");
+  }
+  if (cell.value != nullptr && count(child(root, "obstacles")) == 0 && !boolean(self)) {
+    fail(cell, "has no effect without `obstacles` or `contact.self: true`");
+  }
   const Cell distance = child(cell, "distance");
-  return {distance.value != nullptr ? number(distance) : width / 30, number(child(cell, "thickness"))};
+  return {distance.value != nullptr ? number(distance) : width / 30, number(child(cell, "thickness")), boolean(self)};
 }
 
 }  // namespace wunderlich::scene

@@ -14,7 +14,6 @@ namespace {
 /// Keys of the published scene format that this version cannot do; they are no typing errors.
 const std::vector<std::string> later_keys = {
     "ribbons",
-    "contact.self",
 };
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {

@@ -86,7 +86,8 @@ const std::vector<Key> table = {
     {"obstacles.*.keyframes.*.side", Type::vector, "", -far, far, "", {}, "As above."},
     {"obstacles.*.keyframes.*.turn", Type::number, "rad", -many_turns, many_turns, "", {}, "As above."},
 
-    {"contact", Type::map, "", 0, 0, "", {}, "How the strip and the obstacles touch."},
+    {"contact", Type::map, "", 0, 0, "", {}, "How the strip touches obstacles and itself."},
+    {"contact.self", Type::boolean, "", 0, 0, "false", {}, "Does the strip touch itself? Otherwise it passes through."},
     {"contact.friction", Type::number, "", 0, 100, "0", {}, "Coulomb's coefficient of obstacles that have none."},
     {"contact.distance",
      Type::number,
@@ -103,7 +104,9 @@ const std::vector<Key> table = {
      far,
      "0",
      {},
-     "Kept between the strip's middle surface and a solid beside the gap: half the strip's thickness."},
+     "Kept between the strip's middle surface and a solid, and between two parts of it, beside the gap: half the "
+     "strip's "
+     "thickness for solids, all of it for the strip itself."},
 };
 
 }  // namespace

@@ -207,7 +207,7 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
 }
 
 void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-               const std::vector<double>& multipliers, const std::vector<ContactPoint>& contacts, ChainSystem& system) {
+               const std::vector<double>& multipliers, const Touching& touching, ChainSystem& system) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;
@@ -225,6 +225,8 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   system.rows.clear();
   system.pose_terms.clear();
   system.surfaces.clear();
+  system.points.clear();
+  system.couplings.clear();
   add_ties(ribbon, problem, chain, k, system);
   for (const std::size_t i : {std::size_t{0}, n}) {
     if (!geometry::kappa_is_free(ribbon, static_cast<int>(i))) fix_coordinate(system.links, i, 0);
@@ -232,7 +234,8 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   }
   add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);
-  add_contact(ribbon, problem.contact, chain, k, contacts, system);
+  add_contact(ribbon, problem.contact, chain, k, touching.points, system);
+  if (problem.self.active()) add_self_contact(ribbon, problem.self, chain, k, touching.self, system);
 }
 
 void use_torsion_chart(const Ribbon& ribbon, const Chain& chain, ChainSystem& system) {

@@ -10,6 +10,7 @@
 #include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/math/chain_sweep.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
+#include "wunderlich/solver/self_contact.hpp"
 
 namespace wunderlich::solver {
 
@@ -53,9 +54,16 @@ struct ChainProblem {
   double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
   const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0
   ContactProblem contact;                   ///< solids that the strip stays out of
+  SelfContact self;                         ///< and how it stays out of itself
   std::vector<Hold> holds;                  ///< sorted by decreasing node
   bool closed = false;                      ///< the loop's closure is a constraint
   std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
+};
+
+/// What a chain touches: points beside solids, and parts of itself.
+struct Touching {
+  std::vector<ContactPoint> points;
+  SelfContacts self;
 };
 
 /// Number of constraint rows: the closure's first, then those of each hold in turn.
@@ -82,10 +90,10 @@ ObjectiveValue objective(const geometry::Ribbon& ribbon, const ChainProblem& pro
 void constraint_residuals(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
                           const geometry::Kinematics& kinematics, std::vector<double>& residuals);
 
-/// Fills `system` around the chain; `multipliers` are the current ones, one a row, `contacts` the chain's points.
+/// Fills `system` around the chain; `multipliers` are the current ones, one a row, `touching` what the chain touches.
 void linearise(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
-               const geometry::Kinematics& kinematics, const std::vector<double>& multipliers,
-               const std::vector<ContactPoint>& contacts, math::ChainSystem& system);
+               const geometry::Kinematics& kinematics, const std::vector<double>& multipliers, const Touching& touching,
+               math::ChainSystem& system);
 
 /// Takes the Hessian of `system` along straight lines in curvature and torsion, kappa and kappa eta, for the step. In
 /// these coordinates the bending energy is convex for every eta, in kappa and eta only for |eta| < 0.45, and fold

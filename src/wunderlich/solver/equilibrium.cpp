@@ -138,6 +138,8 @@ const char* phase_name(Phase phase) {
       return "twist";
     case Phase::close:
       return "close";
+    case Phase::relax:
+      return "relax";
     case Phase::approach:
       return "approach";
     case Phase::load:
@@ -195,6 +197,9 @@ PathStep advance(const PathProblem& path, PathState& state, NewtonWorkspace& wor
     case Phase::close:
       step = close_step(path, state, work);
       break;
+    case Phase::relax:
+      step = relax_step(path, state, work);
+      break;
     case Phase::approach:
     case Phase::load:
       step = load_step(path, state, work);
@@ -217,6 +222,8 @@ double fraction_done(const PathProblem& path, const PathState& state) {
       return 0.1 + 0.4 * state.t;
     case Phase::close:
       return 0.5;
+    case Phase::relax:
+      return 0.5 + 0.4 * state.t;
     case Phase::approach:
       return path.ribbon.is_loop() ? 0.6 + 0.1 * state.t : 0.1 * state.t;
     case Phase::load:
@@ -254,8 +261,11 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
   EndReactions reactions;
   if (state.multipliers.size() != row_count(problem)) return reactions;
   geometry::forward_kinematics(ribbon, chain, work.kinematics);
-  find_points(ribbon, problem.contact, chain, work.kinematics, work.contacts);
-  linearise(ribbon, problem, chain, work.kinematics, state.multipliers, work.contacts, work.system);
+  find_points(ribbon, problem.contact, chain, work.kinematics, work.touching.points);
+  if (problem.self.active()) {
+    find_pairs(ribbon, problem.self, chain, work.kinematics, work.search, work.touching.self);
+  }
+  linearise(ribbon, problem, chain, work.kinematics, state.multipliers, work.touching, work.system);
   if (!math::chain_step(work.system, work.sweep, work.step)) return reactions;
   // A held base answers with the gradient of everything beyond it; a held pose with minus its multipliers.
   if (base_is_held(path)) {

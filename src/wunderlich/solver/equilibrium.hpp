@@ -40,9 +40,10 @@ struct PathProblem {
   PathOptions options;
 };
 
-/// bend, twist and close make a loop of the flat strip; approach brings supports and loads from where the strip is
-/// to where they are at t = 0; load follows them in time; settle ends at a static minimum.
-enum class Phase { bend, twist, close, approach, load, settle, done };
+/// bend, twist and close make a loop of the flat strip, and where it feels itself relax lets it come to rest; approach
+/// brings supports and loads from where the strip is to where they are at t = 0; load follows them in time; settle ends
+/// at a static minimum.
+enum class Phase { bend, twist, close, relax, approach, load, settle, done };
 const char* phase_name(Phase phase);
 
 /// Where the path stands: everything a checkpoint needs.

@@ -143,6 +143,8 @@ void problem_at(const PathProblem& path, const PathState& state, double t, Chain
   }
   add_loads(path, state, t, problem);
   place_solids(ribbon, path.surroundings, t, problem.contact);
+  place_self(path.ribbon, path.surroundings, path.surroundings.contact.distance, state.closed, state.chain.eta,
+             problem.self);
 }
 
 }  // namespace wunderlich::solver

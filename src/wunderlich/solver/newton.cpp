@@ -17,7 +17,7 @@ namespace {
 /// How far |x| may move towards 1 in one step, as a share of the way.
 constexpr double kBoundaryFraction = 0.9;
 constexpr double kKick = 0.05;  // largest fold-angle change that leaves a saddle [rad]
-constexpr int kMaxKicks = 20, kMaxUnshifted = 3;
+constexpr int kMaxHalvings = 20, kMaxKicks = 20, kMaxUnshifted = 3;
 constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: stationary, but is it a minimum?
 constexpr int kInversePasses = 12;
 constexpr double kNeutral = 1e-7;  // eigenvalues below this (units of the shift) count as zero
@@ -169,10 +169,14 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
 /// Value of the iterate, with contact.
 void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chain& current, NewtonWorkspace& work) {
   work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
-  work.contacts.clear();
+  work.touching.points.clear();
+  if (problem.self.active()) {
+    find_pairs(ribbon, problem.self, current, work.kinematics, work.search, work.touching.self);
+    work.value.contact = self_energy(ribbon, problem.self, work.touching.self);
+  }
   if (problem.contact.empty()) return;
-  find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
-  work.value.contact = contact_energy(ribbon, problem.contact, work.contacts);
+  find_points(ribbon, problem.contact, current, work.kinematics, work.touching.points);
+  work.value.contact += contact_energy(ribbon, problem.contact, work.touching.points);
   work.value.friction = friction_value(problem.contact, work.kinematics);
 }
 
@@ -181,12 +185,18 @@ void value_trial(const Iterate& at) {
   NewtonWorkspace& work = at.work;
   geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
   work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Touching &from = work.touching, &to = work.trial_touching;
+  const SelfContact& self = at.problem.self;
+  if (self.active()) {
+    const bool free = travel(at.ribbon, self, from.self, work.trial, work.trial_kinematics, work.search, to.self);
+    work.trial_value.contact = free ? self_energy(at.ribbon, self, to.self) : kInfinity;
+  }
   const ContactProblem& contact = at.problem.contact;
   if (contact.empty()) return;
-  find_points(at.ribbon, contact, work.trial, work.trial_kinematics, work.trial_contacts);
-  work.trial_value.contact = may_go(contact, work.contacts, work.trial_contacts)
-                                 ? contact_energy(at.ribbon, contact, work.trial_contacts)
-                                 : std::numeric_limits<double>::infinity();
+  find_points(at.ribbon, contact, work.trial, work.trial_kinematics, to.points);
+  work.trial_value.contact +=
+      may_go(contact, from.points, to.points) ? contact_energy(at.ribbon, contact, to.points) : kInfinity;
   work.trial_value.friction = friction_value(contact, work.trial_kinematics);
 }
 
@@ -194,7 +204,7 @@ void value_trial(const Iterate& at) {
 void move_on(Chain& current, NewtonWorkspace& work) {
   std::swap(current, work.trial);
   std::swap(work.kinematics, work.trial_kinematics);
-  std::swap(work.contacts, work.trial_contacts);
+  std::swap(work.touching, work.trial_touching);
   work.value = work.trial_value;
   work.value.loads = 0;
 }
@@ -266,7 +276,9 @@ bool softest_mode(const Ribbon& ribbon, NewtonWorkspace& work) {
 
 /// Moves the iterate along the direction in work.step, far enough to leave a saddle, little enough that the
 /// constraints, which hold along it to first order only, are not torn.
-void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
+void kick(const Iterate& at, Chain& current) {
+  const Ribbon& ribbon = at.ribbon;
+  NewtonWorkspace& work = at.work;
   double turn = 1e-12, fold = 0;
   for (std::size_t i = 0; i < work.step.u.size(); ++i) {
     fold = std::max(fold, std::sqrt(turn_squared(work, i)));
@@ -274,10 +286,14 @@ void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
   }
   NewtonOptions small;
   small.max_turn = kKick;
-  const double scale = std::min(kKick / turn, step_limit(ribbon, small, current, work, fold));
-  apply_step(current, work.step, scale, work.trial);
-  std::swap(current, work.trial);
-  geometry::forward_kinematics(ribbon, current, work.kinematics);
+  double scale = std::min(kKick / turn, step_limit(ribbon, small, current, work, fold));
+  for (int i = 0; i < kMaxHalvings; ++i, scale *= 0.5) {
+    apply_step(current, work.step, scale, work.trial);
+    value_trial(at);
+    if (!std::isfinite(work.trial_value.total())) continue;
+    move_on(current, work);
+    return;
+  }
 }
 
 /// What a stationary iterate is: a minimum (also where the softest mode is neutral, as in sliding along a closed
@@ -330,7 +346,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
-    linearise(ribbon, problem, current, work.kinematics, lambda, work.contacts, work.system);
+    linearise(ribbon, problem, current, work.kinematics, lambda, work.touching, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
     if (inertial) shift = 0;
@@ -372,8 +388,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     }
     if (kind == Stationary::saddle && report.kicks < kMaxKicks) {
       ++report.kicks;
-      if (softest_mode(ribbon, work)) kick(ribbon, current, work);
-      value_iterate(ribbon, problem, current, work);
+      if (softest_mode(ribbon, work)) kick(at, current);
       continue;
     }
     if (kind == Stationary::saddle || !line_search(at, current, merit, slope, limit, report)) {

@@ -50,7 +50,8 @@ struct NewtonWorkspace {
   std::vector<double> multipliers;
   std::vector<double> residuals, trial_residuals;
   ObjectiveValue value, trial_value;
-  std::vector<ContactPoint> contacts, trial_contacts;
+  Touching touching, trial_touching;
+  SelfSearch search;
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };
 

@@ -52,6 +52,8 @@ Phase next_phase(const PathProblem& path, Phase phase) {
     case Phase::twist:
       return Phase::close;
     case Phase::close:
+      return path.surroundings.contact.self ? Phase::relax : alone ? Phase::done : Phase::approach;
+    case Phase::relax:
       return alone ? Phase::done : Phase::approach;
     case Phase::approach:
       return Phase::load;

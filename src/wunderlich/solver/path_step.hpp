@@ -39,5 +39,6 @@ bool solve_at(const PathProblem& path, PathState& state, double t, const Proxima
 PathStep bend_step(const PathProblem& path, PathState& state);
 PathStep twist_step(const PathProblem& path, PathState& state, NewtonWorkspace& work);
 PathStep close_step(const PathProblem& path, PathState& state, NewtonWorkspace& work);
+PathStep relax_step(const PathProblem& path, PathState& state, NewtonWorkspace& work);
 
 }  // namespace wunderlich::solver

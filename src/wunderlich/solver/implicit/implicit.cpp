@@ -75,15 +75,20 @@ void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
 bool start_clear(const PathProblem& path, const State& state, double h, Workspace& work) {
   const Ribbon& ribbon = path.ribbon;
   ContactProblem& contact = work.problem.contact;
-  if (contact.empty()) return true;
+  const SelfContact& self = work.problem.self;
+  if (contact.empty() && !self.active()) return true;
   place_solids(ribbon, path.surroundings, state.path.t, work.solids);
   geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
   find_points(ribbon, work.solids, state.path.chain, work.kinematics, work.before);
   set_friction(ribbon, work.solids, work.before, state.path.chain, work.kinematics, h, contact);
+  SelfSearch& search = work.newton.search;
+  if (self.active()) find_pairs(ribbon, self, state.path.chain, work.kinematics, search, work.self_before);
   const auto is_clear = [&](const Chain& chain) {
     geometry::forward_kinematics(ribbon, chain, work.kinematics);
     find_points(ribbon, contact, chain, work.kinematics, work.predicted);
-    return may_go(contact, work.before, work.predicted);
+    if (!may_go(contact, work.before, work.predicted)) return false;
+    return !self.active() ||
+           travel(ribbon, self, work.self_before, chain, work.kinematics, search, work.self_predicted);
   };
   if (is_clear(work.trial)) return true;
   const Pose held = work.trial.base;
@@ -234,6 +239,10 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   place_solids(path.ribbon, path.surroundings, state.path.t, work.solids);
   find_points(path.ribbon, work.solids, state.path.chain, work.kinematics, work.before);
   state.elastic += contact_energy(path.ribbon, work.solids, work.before);
+  if (const SelfContact& self = work.problem.self; self.active()) {
+    find_pairs(path.ribbon, self, state.path.chain, work.kinematics, work.newton.search, work.self_before);
+    state.elastic += self_energy(path.ribbon, self, work.self_before);
+  }
   state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   state.base_reaction.setZero();
   work.multipliers.assign(row_count(work.problem), 0.0);
@@ -347,8 +356,12 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
   state.path.iterations += report.iterations;
   if (carries_frames(path)) note_frames(path, state.path);
   drag(ribbon, options, h, work.newton.kinematics, state.points);
-  report.nearest = std::min(report.nearest, smallest_distance(work.problem.contact, work.newton.contacts));
-  report.touching = contact_count(work.problem.contact, work.newton.contacts);
+  report.nearest = std::min(report.nearest, smallest_distance(work.problem.contact, work.newton.touching.points));
+  report.touching = contact_count(work.problem.contact, work.newton.touching.points);
+  if (const SelfContact& self = work.problem.self; self.active()) {
+    report.nearest = std::min(report.nearest, smallest_distance(self, work.newton.touching.self));
+    report.touching += static_cast<int>(work.newton.touching.self.pairs.size());
+  }
   report.inelastic = state.level == kInelastic;
   if (report.inelastic) {  // the accelerations of an impulse are nothing to go on with
     state.level = level;

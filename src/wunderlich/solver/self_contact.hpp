@@ -1,0 +1,76 @@
+/// Contact of a strip with itself: corners against facets and edges against edges, kept apart by a barrier.
+///
+/// Corners are the ends of the rulings, r + v (d2 + eta d3) with v = -w/2, w/2: corner 2i + side of node i. Between
+/// them facets are flat, two triangles each, and edges straight, so that pairs of these are all there is to look at.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "wunderlich/constraint/support.hpp"
+#include "wunderlich/contact/near_pairs.hpp"
+#include "wunderlich/contact/pair.hpp"
+#include "wunderlich/geometry/chain.hpp"
+#include "wunderlich/math/chain_sweep.hpp"
+
+namespace wunderlich::solver {
+
+/// How a strip feels itself during one minimisation.
+struct SelfContact {
+  double reach = 0;         ///< gap at which forces begin [m]; 0: it does not feel itself
+  double thickness = 0;     ///< that stays between two parts of the middle surface [m]
+  double stiffness = 0;     ///< of a pair's barrier [N/m]
+  double period = 0;        ///< loops: their length [m]
+  double flip = 1;          ///< loops: -1 where the seam turns the surface over
+  double open_seam = 0;     ///< length about the seam of a loop that is not closed yet, whose sides do not touch [m]
+  std::vector<double> eta;  ///< rulings of the flat pattern that neighbours are told by
+  bool active() const { return reach > 0; }
+};
+
+/// Two parts of the surface, by their corners.
+struct SelfPair {
+  contact::PairKind kind;
+  std::array<int, 4> corner;
+};
+
+/// Where the corners are, and the pairs within reach.
+struct SelfContacts {
+  std::vector<Vec3> corners;  ///< (2 (segments + 1))
+  std::vector<SelfPair> pairs;
+};
+
+/// Buffers of the search.
+struct SelfSearch {
+  contact::NearPairs near;
+  std::vector<SelfPair> candidates;
+};
+
+/// The surroundings' contact, with forces from `reach` on, for a strip whose flat pattern has these rulings. `closed`:
+/// is the loop closed yet?
+void place_self(const geometry::Ribbon& loop, const constraint::Surroundings& surroundings, double reach, bool closed,
+                const std::vector<double>& eta, SelfContact& problem);
+
+/// Corners and pairs of a strip at rest.
+void find_pairs(const geometry::Ribbon& ribbon, const SelfContact& problem, const geometry::Chain& chain,
+                const geometry::Kinematics& kinematics, SelfSearch& search, SelfContacts& contacts);
+
+/// The same at the end of a way, on which corners go straight. False if something would pass through something, or if a
+/// gap would lose more than nine tenths of what it was within reach; then `to` is not complete.
+bool travel(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& from,
+            const geometry::Chain& chain, const geometry::Kinematics& kinematics, SelfSearch& search, SelfContacts& to);
+
+/// Energy of the barrier [J].
+double self_energy(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts);
+
+/// Adds its derivatives.
+void add_self_contact(const geometry::Ribbon& ribbon, const SelfContact& problem, const geometry::Chain& chain,
+                      const geometry::Kinematics& kinematics, const SelfContacts& contacts, math::ChainSystem& system);
+
+/// Smallest distance of parts that are not neighbours, beyond the thickness [m]; `reach` where none is nearer.
+double smallest_distance(const SelfContact& problem, const SelfContacts& contacts);
+
+/// How many edges go through facets that are not their neighbours'. A barrier does not see what is so from the start.
+int count_crossings(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts,
+                    SelfSearch& search);
+
+}  // namespace wunderlich::solver
