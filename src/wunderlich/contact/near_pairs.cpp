@@ -7,7 +7,7 @@ namespace wunderlich::contact {
 
 namespace {
 
-constexpr std::size_t kLeafItems = 8;
+constexpr std::size_t kLeafItems = 16;
 constexpr int kKeyBits = 30;  // ten a coordinate: cells of a thousandth of the whole
 constexpr int kDigitBits = 10;
 
@@ -121,8 +121,15 @@ struct Walk {
     for (std::size_t i = leaf_begin(first, a); i < end_a; ++i) {
       const GridBox box = first.boxes[i];
       if (!overlap(box, all_b)) continue;
+      // Without a branch for each: whether boxes overlap is not to be foreseen.
+      std::array<std::size_t, 2 * kLeafItems> hits;
+      std::size_t count = 0;
       for (std::size_t j = begin_b; j < end_b; ++j) {
-        if (overlap(box, second.boxes[j]) && first.items[i].overlaps(second.items[j])) add(i, j);
+        hits[count] = j;
+        count += overlap(box, second.boxes[j]) ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        if (first.items[i].overlaps(second.items[hits[k]])) add(i, hits[k]);
       }
     }
   }
