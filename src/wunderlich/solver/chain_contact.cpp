@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/math/rotation.hpp"
 
 namespace wunderlich::solver {
 
+using contact::Barrier;
+using contact::barrier;
 using geometry::Chain;
 using geometry::Kinematics;
 using geometry::Ribbon;
@@ -19,18 +22,6 @@ constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leave
 constexpr int kMostCells = 12;       // across a strip, and along a segment
 constexpr double kSlipSpeed = 1e-3;  // below which friction is less than Coulomb's [m/s]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct Barrier {
-  double value, first, second;
-};
-
-/// -(d - e)^2 ln(d/e) for d < e.   @eq Li2020:6
-Barrier barrier(double d, double e) {
-  if (d >= e) return {0, 0, 0};
-  if (!(d > 0)) return {kInfinity, 0, 0};
-  const double log = std::log(d / e), less = d - e;
-  return {-less * less * log, -2 * less * log - less * less / d, -2 * log - 4 * less / d + less * less / (d * d)};
-}
 
 double smallest_radius(const contact::Shape& shape) {
   if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return sphere->radius;
