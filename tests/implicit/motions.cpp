@@ -145,12 +145,4 @@ void show(const std::string& name, double measured, double asked) {
   ::testing::Test::RecordProperty(key, value);
 }
 
-bool is_slow_build() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
-  return true;
-#else
-  return false;
-#endif
-}
-
 }  // namespace wunderlich::testing

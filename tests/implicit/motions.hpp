@@ -61,7 +61,4 @@ void expect_exact(const Exactness& worst);
 /// Prints a figure beside the one asked for, and keeps it with the test's results.
 void show(const std::string& name, double measured, double asked);
 
-/// Does a run under a sanitizer or without optimisation, ten to fifty times as slow, have to make do with less.
-bool is_slow_build();
-
 }  // namespace wunderlich::testing

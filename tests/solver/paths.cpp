@@ -115,4 +115,12 @@ void expect_second_order(const std::vector<double>& errors) {
   }
 }
 
+bool is_slow_build() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
+  return true;
+#else
+  return false;
+#endif
+}
+
 }  // namespace wunderlich::testing

@@ -46,6 +46,9 @@ PathEnd moebius(int segments, double width, double barrier);
 /// Constraint errors <= 1e-9 and area error <= 1e-10, and that the path got to its end.
 void expect_exact(const PathEnd& end);
 
+/// Does a run under a sanitizer or without optimisation, ten to fifty times as slow, have to make do with less.
+bool is_slow_build();
+
 /// Errors fall at an observed order of at least 1.8 as segments double.
 void expect_second_order(const std::vector<double>& errors);
 

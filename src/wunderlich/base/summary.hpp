@@ -61,9 +61,9 @@ struct HistoryRow {
   double step_us = 0;
 };
 
-/// With solids, beyond the thickness that is kept.
+/// With solids, and of the strip with itself; beyond the thickness that is kept.
 struct ContactSummary {
-  int count = 0;                ///< points within the distance at which forces begin, at the end
+  int count = 0;                ///< points and pairs within the distance at which forces begin, at the end
   double max_penetration = 0;   ///< largest at any step [m]
   double minimum_distance = 0;  ///< smallest at any step [m]
 };

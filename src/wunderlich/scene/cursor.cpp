@@ -17,7 +17,7 @@ void visit_state(State& state, const Visit& visit) {
     for (int c = 0; c < 3; ++c) visit(p.position[c]);
     visit(p.frame.x()), visit(p.frame.y()), visit(p.frame.z()), visit(p.frame.w());
   };
-  visit(state.t), visit(state.dt), visit(state.clock);
+  visit(state.t), visit(state.dt), visit(state.clock), visit(state.nearest);
   pose(state.chain.base);
   for (auto& kappa : state.chain.kappa) visit(kappa);
   for (auto& eta : state.chain.eta) visit(eta);
@@ -26,7 +26,7 @@ void visit_state(State& state, const Visit& visit) {
   for (auto& q : state.transported) visit(q.x()), visit(q.y()), visit(q.z()), visit(q.w());
 }
 
-constexpr std::size_t kCounts = 8;
+constexpr std::size_t kCounts = 9;
 
 }  // namespace
 
@@ -38,7 +38,8 @@ std::vector<double> pack_cursor(const PathState& state) {
                              state.closed ? 1.0 : 0.0,
                              static_cast<double>(state.multipliers.size()),
                              static_cast<double>(state.origin.size()),
-                             static_cast<double>(state.transported.size())};
+                             static_cast<double>(state.transported.size()),
+                             static_cast<double>(state.touching)};
   visit_state(state, [&](const double& number) { cursor.push_back(number); });
   return cursor;
 }
@@ -56,6 +57,7 @@ PathState unpack_cursor(const solver::PathProblem& path, const std::vector<doubl
   state.iterations = static_cast<int>(cursor[2]);
   state.negative_modes = static_cast<int>(cursor[3]);
   state.closed = cursor[4] != 0;
+  state.touching = static_cast<int>(cursor[8]);
   const auto count = static_cast<std::size_t>(path.ribbon.node_count());
   const std::size_t supports = path.surroundings.supports.size();
   if (cursor[6] != 0 && cursor[6] != static_cast<double>(supports)) broken();

@@ -92,7 +92,7 @@ class ImplicitMover : public Mover {
                                     state_.path.chain.eta);
   }
   void add_findings(Summary& summary) const override {
-    if (!problem_.surroundings.obstacles.empty()) {
+    if (!problem_.surroundings.obstacles.empty() || problem_.surroundings.contact.self) {
       const double nearest = findings_.nearest;
       summary.contact = ContactSummary{static_cast<int>(findings_.touching), std::max(0.0, -nearest), nearest};
     }

@@ -66,11 +66,12 @@ double last_key_time(const constraint::Surroundings& surroundings) {
   return last;
 }
 
+std::string place_of(const Cell& cell) { return described(cell.place) + ": " + cell.path; }
+
 std::vector<std::string> places_of(const Cell& list) {
   std::vector<std::string> places;
   for (std::size_t i = 0; i < count(list); ++i) {
-    const Cell cell = element(list, i);
-    places.push_back(described(cell.place) + ": " + cell.path);
+    places.push_back(place_of(element(list, i)));
   }
   return places;
 }
@@ -92,6 +93,7 @@ Scene read_scene_text(const std::string& text, const std::string& source, const 
   scene.ribbon = build_ribbon(root);
   scene.surroundings = build_surroundings(root, scene.ribbon);
   scene.obstacle_places = places_of(child(root, "obstacles"));
+  if (const Cell contact = child(root, "contact"); contact.value != nullptr) scene.contact_place = place_of(contact);
   scene.initial = build_initial(root, scene.ribbon);
   scene.solver = build_solver(root, scene.ribbon, last_key_time(scene.surroundings));
   scene.output = build_output(root, scene.ribbon);

@@ -75,9 +75,11 @@ Summary summary_of(const Scene& scene, const geometry::Ribbon& ribbon, const Rec
   if (most_bent(ribbon, kappa) > 0.5) {
     summary.warnings.push_back("some hinges turn by more than 0.5 rad; more segments would resolve the curvature");
   }
-  if (scene.ribbon.closure == geometry::Closure::loop && std::abs(scene.ribbon.half_twists) >= 2) {
+  const bool turns = scene.ribbon.closure == geometry::Closure::loop && std::abs(scene.ribbon.half_twists) >= 2;
+  if (turns && !scene.surroundings.contact.self) {
     summary.warnings.push_back(
-        "self-contact is not modelled: a loop with this many half twists may pass through itself");
+        "the strip does not feel itself: a loop with this many half twists may pass through itself; "
+        "`contact.self: true` keeps it from that");
   }
   return summary;
 }

@@ -75,6 +75,9 @@ Summary summarise(const Scene& scene, const PathProblem& path, const PathState& 
                                " negative modes");
   }
   add_ends(path, state, work, summary);
+  if (!path.surroundings.obstacles.empty() || path.surroundings.contact.self) {
+    summary.contact = ContactSummary{state.touching, std::max(0.0, -state.nearest), state.nearest};
+  }
   return summary;
 }
 
@@ -126,7 +129,8 @@ std::string lost_turns(const PathProblem& path, const PathState& state, const St
   const double link = geometry::topology(solver::ribbon_of(path, state), shape).link;
   if (std::abs(link - wanted) < 0.1) return "";
   return "the band closed with linking number " + std::to_string(link) + " instead of " + std::to_string(wanted) +
-         ": it passed through itself on the way (self-contact is not modelled)";
+         ": it passed through itself on the way" +
+         (path.surroundings.contact.self ? "" : " (`contact.self: true` keeps it from that)");
 }
 
 RunResult run_path(const Scene& scene, const Observer& observer, const Progress* resume) {

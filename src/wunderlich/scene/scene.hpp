@@ -67,6 +67,7 @@ struct Scene {
   geometry::RibbonSpec ribbon;
   constraint::Surroundings surroundings;
   std::vector<std::string> obstacle_places;  ///< where each was written, `file:line:column: key`, for messages
+  std::string contact_place;                 ///< the same of `contact`
   InitialState initial;
   SolverOptions solver;
   OutputOptions output;

@@ -122,6 +122,21 @@ Start shape_of(const Scene& scene, const Ribbon& ribbon) {
   return {};
 }
 
+/// A barrier keeps apart what is apart: does the strip cross or touch itself from the start?
+bool meets_itself(const Scene& scene, const Ribbon& ribbon, const State& shape) {
+  const constraint::Contact& contact = scene.surroundings.contact;
+  if (!contact.self) return false;
+  const geometry::Chain chain = geometry::chain_of(ribbon, shape);
+  geometry::Kinematics kinematics;
+  geometry::forward_kinematics(ribbon, chain, kinematics);
+  solver::SelfContact self;
+  solver::place_self(ribbon, scene.surroundings, contact.distance, true, chain.eta, self);
+  solver::SelfSearch search;
+  solver::SelfContacts contacts;
+  solver::find_pairs(ribbon, self, chain, kinematics, search, contacts);
+  return solver::smallest_distance(self, contacts) <= 0 || solver::count_crossings(ribbon, self, contacts, search) > 0;
+}
+
 void set_velocity(const InitialState& initial, const Ribbon& ribbon, State& state) {
   Vec3 center = Vec3::Zero();
   double mass = 0;
@@ -140,6 +155,7 @@ void set_velocity(const InitialState& initial, const Ribbon& ribbon, State& stat
 Start start_of(const Scene& scene, const Ribbon& ribbon) {
   Start start = shape_of(scene, ribbon);
   if (!start.failure.empty()) return start;
+  if (meets_itself(scene, ribbon, start.shape)) return {{}, "the strip starts across itself or touches itself"};
   const bool placed = scene.initial.shape == InitialShape::equilibrium || ribbon.is_loop();
   if (!placed) bring_to_supports(scene, ribbon, start.shape);
   start.shape.time = 0;
@@ -152,8 +168,13 @@ void check_start(const Scene& scene) {
   // Other starts are not known before the run.
   const bool known = scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
                      scene.initial.shape == InitialShape::coil;
-  if (surroundings.obstacles.empty() || !known) return;
+  if (!known) return;
   const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
+  if (surroundings.contact.self && scene.initial.shape == InitialShape::coil) {
+    const std::string problem = start_of(scene, ribbon).failure;
+    if (!problem.empty()) throw InputError(scene.contact_place + ": " + problem);
+  }
+  if (surroundings.obstacles.empty()) return;
   const geometry::Chain chain = scene.solver.method == Method::equilibrium
                                     ? solver::start_path(solver::make_path(ribbon, surroundings, {})).chain
                                     : geometry::chain_of(ribbon, start_of(scene, ribbon).shape);

@@ -128,6 +128,25 @@ PathStep settle_step(const PathProblem& path, PathState& state, NewtonWorkspace&
   return step;
 }
 
+/// What the strip touches now, and how near it has come.
+void note_contact(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
+  const constraint::Surroundings& surroundings = path.surroundings;
+  if (surroundings.obstacles.empty() && !surroundings.contact.self) return;
+  const Ribbon& ribbon = ribbon_of(path, state);
+  ChainProblem problem;
+  Chain chain = state.chain;
+  const bool over = state.phase == Phase::settle || state.phase == Phase::done;
+  problem_at(path, state, over ? path.options.duration : state.t, chain, problem);
+  geometry::forward_kinematics(ribbon, state.chain, work.kinematics);
+  find_points(ribbon, problem.contact, state.chain, work.kinematics, work.touching.points);
+  state.touching = contact_count(problem.contact, work.touching.points);
+  state.nearest = std::min(state.nearest, smallest_distance(problem.contact, work.touching.points));
+  if (!problem.self.active()) return;
+  find_pairs(ribbon, problem.self, state.chain, work.kinematics, work.search, work.touching.self);
+  state.touching += static_cast<int>(work.touching.self.pairs.size());
+  state.nearest = std::min(state.nearest, smallest_distance(problem.self, work.touching.self));
+}
+
 }  // namespace
 
 const char* phase_name(Phase phase) {
@@ -211,6 +230,7 @@ PathStep advance(const PathProblem& path, PathState& state, NewtonWorkspace& wor
       break;
   }
   if (step.accepted) ++state.steps;
+  if (step.accepted) note_contact(path, state, work);
   return step;
 }
 

@@ -55,6 +55,8 @@ struct PathState {
   int steps = 0;           ///< accepted so far
   int iterations = 0;      ///< Newton iterations so far, failed attempts included
   int negative_modes = 0;  ///< at the last minimisation
+  int touching = 0;        ///< points and pairs of parts of the strip that feel a solid or each other
+  double nearest = 1e9;    ///< smallest distance of these so far, beyond the thickness [m]
   bool closed = false;     ///< `chain` is of `ribbon`; before a loop closes it is of `cut`
   geometry::Chain chain;
   std::vector<double> multipliers;

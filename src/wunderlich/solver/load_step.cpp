@@ -142,7 +142,7 @@ void problem_at(const PathProblem& path, const PathState& state, double t, Chain
     }
   }
   add_loads(path, state, t, problem);
-  place_solids(ribbon, path.surroundings, t, problem.contact);
+  place_solids(ribbon, path.surroundings, state.phase == Phase::approach ? 0 : t, problem.contact);
   place_self(path.ribbon, path.surroundings, path.surroundings.contact.distance, state.closed, state.chain.eta,
              problem.self);
 }

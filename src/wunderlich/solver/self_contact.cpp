@@ -100,45 +100,58 @@ struct Parts {
 
 /// A box about some corners and about where they come from.
 template <std::size_t N>
-contact::Bounds bounds(const std::array<int, N>& corners, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+contact::Extent extent(const std::array<int, N>& corners, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
                        double margin) {
-  contact::Bounds out;
-  out.low = out.high = from[static_cast<std::size_t>(corners[0])];
+  contact::Extent out{from[static_cast<std::size_t>(corners[0])], from[static_cast<std::size_t>(corners[0])]};
   for (const int corner : corners) {
-    const auto k = static_cast<std::size_t>(corner);
-    out.low = out.low.cwiseMin(from[k]).cwiseMin(to[k]);
-    out.high = out.high.cwiseMax(from[k]).cwiseMax(to[k]);
+    out.add(from[static_cast<std::size_t>(corner)]);
+    out.add(to[static_cast<std::size_t>(corner)]);
   }
-  out.low.array() -= margin;
-  out.high.array() += margin;
+  out.widen(margin);
   return out;
+}
+
+void find_extents(const Parts& parts, const std::vector<Vec3>& from, const std::vector<Vec3>& to, double margin,
+                  SelfSearch& search) {
+  search.corners.clear(), search.edges.clear(), search.triangles.clear();
+  for (int k = 0; k < parts.corners(); ++k) search.corners.push_back(extent<1>({k}, from, to, margin));
+  for (int k = 0; k < parts.edges(); ++k) search.edges.push_back(extent(parts.edge(k), from, to, margin));
+  for (int k = 0; k < parts.triangles(); ++k) search.triangles.push_back(extent(parts.triangle(k), from, to, margin));
 }
 
 /// All pairs that may come within reach on the way, but for neighbours.
 void find_candidates(const Ribbon& ribbon, const SelfContact& problem, const std::vector<Vec3>& from,
                      const std::vector<Vec3>& to, SelfSearch& search) {
   const Parts parts(ribbon, problem);
-  const double margin = 0.5 * (problem.reach + problem.thickness);
+  find_extents(parts, from, to, 0.5 * (problem.reach + problem.thickness), search);
+  const contact::Grid grid = contact::grid_over(search.triangles);
+  contact::build_tree(search.corners, grid, search.corner_tree);
+  contact::build_tree(search.edges, grid, search.edge_tree);
+  contact::build_tree(search.triangles, grid, search.triangle_tree);
   search.candidates.clear();
   const auto take = [&](const SelfPair& pair) {
     if (!are_neighbours(ribbon, problem, pair)) search.candidates.push_back(pair);
   };
-  auto& near = search.near;
-  near.first.clear(), near.second.clear();
-  for (int k = 0; k < parts.corners(); ++k) near.first.push_back(bounds<1>({k}, from, to, margin));
-  for (int k = 0; k < parts.triangles(); ++k) near.second.push_back(bounds(parts.triangle(k), from, to, margin));
-  contact::find_between(near);
-  for (const auto& [corner, triangle] : near.pairs) {
+  contact::find_near(search.corner_tree, search.triangle_tree, search.near);
+  for (const auto& [corner, triangle] : search.near) {
     const auto t = parts.triangle(triangle);
     take({PairKind::vertex_triangle, {corner, t[0], t[1], t[2]}});
   }
-  near.first.clear();
-  for (int k = 0; k < parts.edges(); ++k) near.first.push_back(bounds(parts.edge(k), from, to, margin));
-  contact::find_within(near);
-  for (const auto& [a, b] : near.pairs) {
+  contact::find_near(search.edge_tree, search.near);
+  for (const auto& [a, b] : search.near) {
     const auto ea = parts.edge(a), eb = parts.edge(b);
     take({PairKind::edge_edge, {ea[0], ea[1], eb[0], eb[1]}});
   }
+}
+
+/// Does the edge from p to q go through the triangle?
+bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto volume = [](const Vec3& o, const Vec3& x, const Vec3& y, const Vec3& z) {
+    return (x - o).cross(y - o).dot(z - o) > 0;
+  };
+  if (volume(p, a, b, c) == volume(q, a, b, c)) return false;
+  const bool side = volume(p, q, a, b);
+  return side == volume(p, q, b, c) && side == volume(p, q, c, a);
 }
 
 void find_corners(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::vector<Vec3>& corners) {
@@ -306,23 +319,20 @@ double smallest_distance(const SelfContact& problem, const SelfContacts& contact
 int count_crossings(const Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts,
                     SelfSearch& search) {
   const Parts parts(ribbon, problem);
-  auto& near = search.near;
-  near.first.clear(), near.second.clear();
-  for (int k = 0; k < parts.edges(); ++k)
-    near.first.push_back(bounds(parts.edge(k), contacts.corners, contacts.corners, 0));
-  for (int k = 0; k < parts.triangles(); ++k) {
-    near.second.push_back(bounds(parts.triangle(k), contacts.corners, contacts.corners, 0));
-  }
-  contact::find_between(near);
+  find_extents(parts, contacts.corners, contacts.corners, 0, search);
+  const contact::Grid grid = contact::grid_over(search.triangles);
+  contact::build_tree(search.edges, grid, search.edge_tree);
+  contact::build_tree(search.triangles, grid, search.triangle_tree);
+  contact::find_near(search.edge_tree, search.triangle_tree, search.near);
   int count = 0;
-  for (const auto& [edge, triangle] : near.pairs) {
+  for (const auto& [edge, triangle] : search.near) {
     const auto e = parts.edge(edge);
     const auto t = parts.triangle(triangle);
     const SelfPair first{PairKind::vertex_triangle, {e[0], t[0], t[1], t[2]}};
     const SelfPair second{PairKind::vertex_triangle, {e[1], t[0], t[1], t[2]}};
     if (are_neighbours(ribbon, problem, first) || are_neighbours(ribbon, problem, second)) continue;
     const auto at = [&](int corner) -> const Vec3& { return contacts.corners[static_cast<std::size_t>(corner)]; };
-    count += contact::crosses(at(e[0]), at(e[1]), at(t[0]), at(t[1]), at(t[2])) ? 1 : 0;
+    count += crosses(at(e[0]), at(e[1]), at(t[0]), at(t[1]), at(t[2])) ? 1 : 0;
   }
   return count;
 }

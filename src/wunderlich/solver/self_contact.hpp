@@ -41,7 +41,9 @@ struct SelfContacts {
 
 /// Buffers of the search.
 struct SelfSearch {
-  contact::NearPairs near;
+  std::vector<contact::Extent> corners, edges, triangles;
+  contact::ExtentTree corner_tree, edge_tree, triangle_tree;
+  std::vector<contact::Near> near;
   std::vector<SelfPair> candidates;
 };
 
