@@ -125,7 +125,7 @@ void add_solids(const Chain& chain, const Kinematics& k, ChainProblem& problem) 
 }
 
 double contact_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k) {
-  std::vector<solver::ContactPoint> points;
+  solver::ContactPoints points;
   find_points(ribbon, problem.contact, chain, k, points);
   return contact_energy(ribbon, problem.contact, points) + friction_value(problem.contact, k);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wunderlich/contact/triangle_mesh.hpp"
+
 namespace wunderlich::contact {
 
 namespace {
@@ -88,6 +90,22 @@ void add_surface(const Box& box, double, Mesh& mesh) {
     const Vec3 b = box.half_size[(k + 2) % 3] * Vec3::Unit((k + 2) % 3);
     add_rectangle(out, a, b, mesh);
     add_rectangle(-out, b, a, mesh);
+  }
+}
+
+/// Each triangle with points of its own: no edge is rounded off.
+void add_surface(const Polyhedron& polyhedron, double, Mesh& mesh) {
+  for (const auto& triangle : polyhedron.mesh->triangles) {
+    const auto corner = [&](std::size_t k) -> const Vec3& {
+      return polyhedron.mesh->vertices[static_cast<std::size_t>(triangle[k])];
+    };
+    const auto first = static_cast<int>(mesh.points.size());
+    const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.points.push_back(corner(k));
+      mesh.normals.push_back(normal);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
   }
 }
 

@@ -198,7 +198,7 @@ double pair_value(PairKind kind, const PairPoints& x, const Gap& gap) {
 }
 
 PairEnergy pair_energy(PairKind kind, const PairPoints& x, const Gap& gap) {
-  PairEnergy energy{0, Vec12::Zero(), Mat12::Zero()};
+  PairEnergy energy{0, Vec12::Zero(), Mat12::Zero(), Vec12::Zero(), 0};
   const Place place = place_of(kind, x);
   const Barrier b = barrier(place.nearest.distance - gap.offset, gap.reach);
   energy.value = b.value;
@@ -206,10 +206,11 @@ PairEnergy pair_energy(PairKind kind, const PairPoints& x, const Gap& gap) {
   const Mollifier m = mollifier(kind, x, gap.parallel);
   energy.value *= m.value;
   const Vec3 n = place.nearest.way / place.nearest.distance;
-  Vec12 along;
+  Vec12& along = energy.along;
   for (int k = 0; k < 4; ++k) along.segment<3>(3 * k) = place.nearest.weights[k] * n;
   energy.gradient = m.value * b.first * along;
-  energy.hessian = m.value * b.second * along * along.transpose();
+  energy.second = m.value * b.second;
+  energy.hessian = energy.second * along * along.transpose();
   add_distance_hessian(place, x, m.value * b.first, energy.hessian);
   if (m.first != 0) add_mollifier(x, b, m, along, energy);
   return energy;

@@ -35,11 +35,14 @@ struct Gap {
   double parallel;  ///< |e1 x e2|^2 of two edges below which it is weakened, 0 for never [m^4]
 };
 
-/// Energy and its derivatives with respect to the four points.
+/// Energy and its derivatives with respect to the four points. `second` times `along along^T` is the part of the
+/// Hessian that pulls along the way, never negative; what is left may be.
 struct PairEnergy {
   double value;
   Vec12 gradient;
   Mat12 hessian;
+  Vec12 along;    ///< gradient of the distance
+  double second;  ///< derivative of the energy by the distance
 };
 
 /// The barrier B(distance - offset, reach). Of edges the nearest points jump when they turn through parallel; there it

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wunderlich/contact/triangle_mesh.hpp"
+
 namespace wunderlich::contact {
 
 namespace {
@@ -91,9 +93,12 @@ Local local_distance(const Box& box, const Vec3& p) {
   return corner;
 }
 
+Local local_distance(const Polyhedron&, const Vec3&) { return {}; }  // has its own, below
+
 }  // namespace
 
 Distance distance(const Shape& shape, const Vec3& point) {
+  if (const auto* polyhedron = std::get_if<Polyhedron>(&shape)) return distance(*polyhedron->mesh, point);
   const Local local = std::visit([&](const auto& solid) { return local_distance(solid, point); }, shape);
   Distance result{local.value, local.normal, Mat3::Zero()};
   if (local.curvature != 0) {

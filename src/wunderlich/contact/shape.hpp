@@ -1,11 +1,14 @@
 /// Solids that a strip can touch, and how far a point is from their surface.
 #pragma once
 
+#include <memory>
 #include <variant>
 
 #include "wunderlich/base/types.hpp"
 
 namespace wunderlich::contact {
+
+struct TriangleMesh;
 
 // Solids in their own frame, centred at its origin, axes along z. Lengths in m.
 struct HalfSpace {};  ///< all z <= 0; its surface is the plane z = 0
@@ -25,8 +28,12 @@ struct Capsule {
 struct Box {
   Vec3 half_size = Vec3::Zero();
 };
+/// Inside a closed surface of triangles; never null.
+struct Polyhedron {
+  std::shared_ptr<const TriangleMesh> mesh;
+};
 
-using Shape = std::variant<HalfSpace, Sphere, Cylinder, Capsule, Box>;
+using Shape = std::variant<HalfSpace, Sphere, Cylinder, Capsule, Box, Polyhedron>;
 
 /// Signed distance of a point to a solid's surface, with its derivatives with respect to the point.
 struct Distance {

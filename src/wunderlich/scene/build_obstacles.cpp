@@ -6,6 +6,7 @@
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/scene/build.hpp"
 #include "wunderlich/scene/keyframes.hpp"
+#include "wunderlich/scene/mesh_text.hpp"
 
 namespace wunderlich::scene {
 
@@ -23,9 +24,12 @@ void check_use(const Cell& cell, const std::string& shape) {
       {"radius", {"sphere", "cylinder", "capsule"}},
       {"length", {"cylinder", "capsule"}},
       {"size", {"box"}},
-      {"side", {"box"}},
+      {"side", {"box", "mesh"}},
+      {"file", {"mesh"}},
+      {"obj", {"mesh"}},
+      {"scale", {"mesh"}},
       {"normal", {"plane"}},
-      {"axis", {"sphere", "cylinder", "capsule", "box"}}};
+      {"axis", {"sphere", "cylinder", "capsule", "box", "mesh"}}};
   for (const auto& [name, shapes] : own) {
     if (std::find(shapes.begin(), shapes.end(), shape) != shapes.end()) continue;
     const Cell given = child(cell, name);
@@ -33,9 +37,18 @@ void check_use(const Cell& cell, const std::string& shape) {
   }
 }
 
+contact::Polyhedron mesh_of(const Cell& cell) {
+  const Cell obj = child(cell, "obj");
+  if (obj.value == nullptr) fail(child(cell, "file"), "is missing; must be the path of an OBJ file, or `obj` its text");
+  const std::string source = fmt::format("{}: {}", described(obj.place), obj.path);
+  return {
+      std::make_shared<const contact::TriangleMesh>(mesh_from_obj(text(obj), source, number(child(cell, "scale"))))};
+}
+
 contact::Shape shape_of(const Cell& cell, const std::string& shape) {
   if (shape == "plane") return contact::HalfSpace{};
   if (shape == "box") return contact::Box{0.5 * vector(child(cell, "size"))};
+  if (shape == "mesh") return mesh_of(cell);
   const double radius = number(child(cell, "radius"));
   if (shape == "sphere") return contact::Sphere{radius};
   const Cell length = child(cell, "length");
@@ -60,8 +73,8 @@ void turn_to(const Cell& cell, const std::string& shape, Stand& stand) {
   if (const Cell c = child(cell, axis_name(shape)); c.value != nullptr) stand.axes.d3 = direction(c);
   if (const Cell c = child(cell, "side"); c.value != nullptr) stand.axes.d1 = direction(c);
   // A round body has no sides to tell: it goes the shortest way, without a turn about its axis.
-  stand.frame = shape == "box" ? frame_of(stand.axes, box_axes, cell)
-                               : math::shortest_rotation(before, stand.axes.d3) * stand.frame;
+  stand.frame = shape == "box" || shape == "mesh" ? frame_of(stand.axes, box_axes, cell)
+                                                  : math::shortest_rotation(before, stand.axes.d3) * stand.frame;
 }
 
 constraint::Motion motion_of(const Cell& cell, const std::string& shape) {

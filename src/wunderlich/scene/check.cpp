@@ -156,6 +156,9 @@ void check_cell(const Cell& cell) {
         fail_value(cell, key);
       }
       return;
+    case Type::lines:
+      if (value.kind != Value::Kind::scalar || value.text.empty()) fail_value(cell, key);
+      return;
     case Type::boolean:
       if (value.quoted || !contains({"true", "false"}, value.text)) fail_value(cell, key);
       return;
@@ -190,6 +193,8 @@ std::string allowed(const Key& key) {
       return fmt::format("a list of at most {:g} maps with {}", key.high, joined(names_below(key.path + ".*")));
     case Type::text:
       return "one line of text, at most 200 bytes";
+    case Type::lines:
+      return "lines of text";
     case Type::number:
       return "a number " + range(key);
     case Type::integer:

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/scene/build.hpp"
+#include "wunderlich/scene/file_text.hpp"
+#include "wunderlich/scene/mesh_text.hpp"
 #include "wunderlich/scene/text.hpp"
 
 namespace wunderlich::scene {
@@ -39,23 +38,10 @@ std::vector<std::string> shipped_names() {
                                joined(shipped_names())));
 }
 
-/// Reads at most `largest_file` bytes, so that no device or growing file can fill the memory.
-std::string file_text(const std::string& path) {
-  const std::string name = shown(path, longest_path);
+std::string scene_text(const std::string& path) {
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail_missing(path);
-  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a folder; a scene is a YAML file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": is not a regular file");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(name + ": cannot be read: " + std::strerror(errno));
-  std::string text(largest_file + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) throw InputError(name + ": cannot be read: " + std::strerror(errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > largest_file) throw InputError(name + ": is larger than 4 MiB, too large for a scene");
-  return text;
+  if (!std::filesystem::exists(path, error)) fail_missing(path);
+  return file_text(path, largest_file, "a scene, which is a YAML file");
 }
 
 double last_key_time(const constraint::Surroundings& surroundings) {
@@ -81,9 +67,12 @@ std::vector<std::string> places_of(const Cell& list) {
 Scene read_scene_text(const std::string& text, const std::string& source, const std::vector<std::string>& overrides) {
   Value document = parse_document(text, shown(source, longest_path));
   Scene scene;
+  const std::string folder = std::filesystem::path(source).parent_path().string();
+  embed_meshes(folder, document);
   if (document.kind == Value::Kind::map) scene.written = to_yaml(document);
   if (!overrides.empty() && document.kind == Value::Kind::map) {
     for (const std::string& assignment : overrides) apply_override(document, assignment);
+    embed_meshes(folder, document);
   }
   check_document(document);
   const Cell root = root_cell(document);
@@ -105,7 +94,7 @@ Scene read_scene(const std::string& name_or_path, const std::vector<std::string>
   if (const ShippedScene* shipped = find_shipped(name_or_path)) {
     return read_scene_text(shipped->text, "scenes/" + shipped->name + ".yaml", overrides);
   }
-  return read_scene_text(file_text(name_or_path), name_or_path, overrides);
+  return read_scene_text(scene_text(name_or_path), name_or_path, overrides);
 }
 
 }  // namespace wunderlich::scene

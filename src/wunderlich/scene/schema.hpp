@@ -12,6 +12,7 @@ enum class Type {
   map,      ///< a map with the keys listed below it
   list,     ///< a list of maps (`path.*`); low and high bound its length
   text,     ///< one line
+  lines,    ///< of text
   number,   ///< finite, in [low, high]
   integer,  ///< in [low, high]
   boolean,  ///< true or false

@@ -52,6 +52,7 @@ Beside values outside their range:
   half a turn between keyframes;
 - keyframes whose times do not increase; a force entry without force and torque; gravity with nothing that holds the
   strip;
+- meshes that are open, turned inside out or in part, or have edges of more than two faces; `file` and `obj` together;
 - obstacles with `solver.method: two-stage`; sizes and directions that a shape does not have; `contact` without
   `obstacles`;
 - both `width` and `aspect`, both `bending_stiffness` and `young_modulus`, both `area_density` and `mass_density`;
@@ -66,6 +67,8 @@ std::string type_name(const Key& key) {
       return "list of maps";
     case Type::text:
       return "text";
+    case Type::lines:
+      return "lines of text";
     case Type::number:
       return "number";
     case Type::integer:

@@ -185,8 +185,11 @@ void check_start(const Scene& scene) {
     one.obstacles = {surroundings.obstacles[i]};
     solver::ContactProblem contact;
     solver::place_solids(ribbon, one, 0, contact);
-    std::vector<solver::ContactPoint> points;
+    solver::ContactPoints points;
     solver::find_points(ribbon, contact, chain, kinematics, points);
+    if (solver::is_inside_mesh(contact.meshes, points.meshes)) {
+      throw InputError(scene.obstacle_places[i] + ": the strip starts inside; it must be outside all of its triangles");
+    }
     const double distance = solver::smallest_distance(contact, points);
     if (distance > contact.margin) continue;
     throw InputError(fmt::format("{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",

@@ -27,7 +27,7 @@ double smallest_radius(const contact::Shape& shape) {
   if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return sphere->radius;
   if (const auto* cylinder = std::get_if<contact::Cylinder>(&shape)) return cylinder->radius;
   if (const auto* capsule = std::get_if<contact::Capsule>(&shape)) return capsule->radius;
-  return std::holds_alternative<contact::Box>(shape) ? 0 : kInfinity;
+  return kInfinity;
 }
 
 /// Where a point is on its segment, and the area it stands for.
@@ -135,13 +135,12 @@ void add_friction(const Friction& friction, double slip, const Slide& slide, mat
 
 void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
                   ContactProblem& problem) {
-  problem.solids.resize(surroundings.obstacles.size());
+  problem.solids.clear();
   problem.friction.clear();
-  if (problem.empty()) return;
   double radius = kInfinity;
-  for (std::size_t i = 0; i < problem.solids.size(); ++i) {
-    const constraint::Obstacle& obstacle = surroundings.obstacles[i];
-    problem.solids[i] = {obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction};
+  for (const constraint::Obstacle& obstacle : surroundings.obstacles) {
+    if (is_mesh(obstacle.shape)) continue;
+    problem.solids.push_back({obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction});
     radius = std::min(radius, smallest_radius(obstacle.shape));
   }
   const double w = ribbon.width, d = surroundings.contact.distance;
@@ -149,6 +148,7 @@ void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surround
   problem.thickness = surroundings.contact.thickness;
   const double load = ribbon.area_density * surroundings.gravity.norm();
   problem.stiffness = kStiffness * std::max(load, ribbon.bending_stiffness / (w * w * w)) / d;
+  place_meshes(surroundings, t, problem.stiffness, problem.meshes);
   // Points that are c apart and c^2/(8 R) off a solid of radius R leave it room between them. Cells lean by up to 45
   // degrees, so that their diagonals' squares are up to four of their sides'. A quarter of the distance is for that.
   const double cell = std::sqrt(0.5 * radius * d);
@@ -159,13 +159,14 @@ void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surround
   problem.across = cells(w);
   problem.along = cells(longest);
   const double side = std::max(w / problem.across, longest / problem.along);
-  problem.margin = radius > 0 ? std::min(0.5 * side * side / radius, d) : 0;
+  problem.margin = std::min(0.5 * side * side / radius, d);
 }
 
 void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
-                 std::vector<ContactPoint>& points) {
+                 ContactPoints& points) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
-  points.resize(problem.solids.size() * n * static_cast<std::size_t>((problem.along + 1) * (problem.across + 1)));
+  find_mesh_pairs(ribbon, problem.meshes, chain, k, points.meshes);
+  points.all.resize(problem.solids.size() * n * static_cast<std::size_t>((problem.along + 1) * (problem.across + 1)));
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     const contact::Shape& shape = problem.solids[i].shape;
     const Pose& pose = problem.solids[i].pose;
@@ -183,28 +184,28 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
       // Distance to a convex solid lies above its tangent plane: what is far by that need not be looked at.
       const double least = middle.value + middle.normal.dot(local - center) - kept;
       if (least > problem.distance) {
-        points[index] = {local, middle.normal, least, Mat3::Zero()};
+        points.all[index] = {local, middle.normal, least, Mat3::Zero()};
         return;
       }
       const contact::Distance d = contact::distance(shape, local);
-      points[index] = {local, d.normal, d.value - kept, d.hessian};
+      points.all[index] = {local, d.normal, d.value - kept, d.hessian};
     });
   }
 }
 
-double contact_energy(const Ribbon& ribbon, const ContactProblem& problem, const std::vector<ContactPoint>& points) {
+double contact_energy(const Ribbon& ribbon, const ContactProblem& problem, const ContactPoints& points) {
   double sum = 0;
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     visit_points(ribbon, problem, i, [&](std::size_t, const Station& at, std::size_t index) {
-      sum += at.area * barrier(points[index].gap, problem.distance).value;
+      sum += at.area * barrier(points.all[index].gap, problem.distance).value;
     });
   }
-  return problem.stiffness * sum;
+  return problem.stiffness * sum + mesh_energy(ribbon, problem.meshes, points.meshes);
 }
 
-bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from, const std::vector<ContactPoint>& to) {
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const ContactPoint &a = from[i], &b = to[i];
+bool may_go(const ContactProblem& problem, const ContactPoints& from, ContactPoints& to) {
+  for (std::size_t i = 0; i < from.all.size(); ++i) {
+    const ContactPoint &a = from.all[i], &b = to.all[i];
     if (!(b.gap > 0 && b.gap >= kLeastShare * std::min(a.gap, problem.distance))) return false;
     // The distance to a convex solid is convex along the way: above its tangents at both ends.
     const Vec3 way = b.at - a.at;
@@ -213,22 +214,23 @@ bool may_go(const ContactProblem& problem, const std::vector<ContactPoint>& from
     const double lowest = a.gap + down * (a.gap - b.gap + up) / (up - down);
     if (!(lowest > 0)) return false;
   }
-  return true;
+  return mesh_may_go(problem.meshes, from.meshes, to.meshes, to.meshes.search);
 }
 
-double smallest_distance(const ContactProblem& problem, const std::vector<ContactPoint>& points) {
-  double least = kInfinity;
-  for (const ContactPoint& point : points) least = std::min(least, point.gap + problem.margin);
+double smallest_distance(const ContactProblem& problem, const ContactPoints& points) {
+  double least = mesh_distance(problem.meshes, points.meshes);
+  for (const ContactPoint& point : points.all) least = std::min(least, point.gap + problem.margin);
   return least;
 }
 
-int contact_count(const ContactProblem& problem, const std::vector<ContactPoint>& points) {
+int contact_count(const ContactProblem& problem, const ContactPoints& points) {
   const auto touches = [&](const ContactPoint& point) { return point.gap < problem.distance; };
-  return static_cast<int>(std::count_if(points.begin(), points.end(), touches));
+  return static_cast<int>(std::count_if(points.all.begin(), points.all.end(), touches)) +
+         static_cast<int>(points.meshes.pairs.size());
 }
 
-double solid_work(const Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& before,
-                  const ContactProblem& to, const std::vector<ContactPoint>& after, double late) {
+double solid_work(const Ribbon& ribbon, const ContactProblem& from, const ContactPoints& before,
+                  const ContactProblem& to, const ContactPoints& after, double late) {
   double work = 0;
   for (std::size_t i = 0; i < to.solids.size(); ++i) {
     const Pose &pose0 = from.solids[i].pose, &pose1 = to.solids[i].pose;
@@ -240,45 +242,46 @@ double solid_work(const Ribbon& ribbon, const ContactProblem& from, const std::v
         const double force = -to.stiffness * at.area * barrier(point.gap, to.distance).first;
         work += share * force * way.dot(pose.frame * point.normal);
       };
-      add(before[index], pose0, 1 - late);
-      add(after[index], pose1, late);
+      add(before.all[index], pose0, 1 - late);
+      add(after.all[index], pose1, late);
     });
   }
-  return work;
+  return work + mesh_work(ribbon, from.meshes, before.meshes, to.meshes, after.meshes, late);
 }
 
 void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
-                 const std::vector<ContactPoint>& points, math::ChainSystem& system) {
-  const auto touches = [&](std::size_t index) { return points[index].gap < problem.distance; };
+                 const ContactPoints& points, math::ChainSystem& system) {
+  const auto touches = [&](std::size_t index) { return points.all[index].gap < problem.distance; };
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     const Mat3 to_space = problem.solids[i].pose.frame.toRotationMatrix();
     visit_points(ribbon, problem, i, [&](std::size_t s, const Station& at, std::size_t index) {
       if (!touches(index)) return;
       const auto node = static_cast<int>(s);
-      Barrier b = barrier(points[index].gap, problem.distance);
+      Barrier b = barrier(points.all[index].gap, problem.distance);
       const double weight = problem.stiffness * at.area;
       b = {weight * b.value, weight * b.first, weight * b.second};
       Lever lever{arm(ribbon, chain, k, s, at), {Vec3::Zero(), Vec3::Zero()}};
       if (geometry::eta_is_free(ribbon, node)) lever.slant[0] = (1 - at.share) * at.v * k.frame[s].col(2);
       if (geometry::eta_is_free(ribbon, node + 1)) lever.slant[1] = at.share * at.v * k.frame[s].col(2);
-      add_point(lever, to_space * points[index].normal, to_space * points[index].hessian * to_space.transpose(), b,
-                term_of(s, system));
+      add_point(lever, to_space * points.all[index].normal, to_space * points.all[index].hessian * to_space.transpose(),
+                b, term_of(s, system));
     });
   }
+  add_mesh_contact(ribbon, problem.meshes, chain, k, points.meshes, system);
   for (const Friction& friction : problem.friction) {
     add_friction(friction, problem.slip, slide_of(friction, k), term_of(friction.segment, system));
   }
 }
 
-void set_friction(const Ribbon& ribbon, const ContactProblem& from, const std::vector<ContactPoint>& points,
-                  const Chain& chain, const Kinematics& k, double h, ContactProblem& problem) {
+void set_friction(const Ribbon& ribbon, const ContactProblem& from, const ContactPoints& points, const Chain& chain,
+                  const Kinematics& k, double h, ContactProblem& problem) {
   problem.friction.clear();
   problem.slip = kSlipSpeed * h;
   for (std::size_t i = 0; i < from.solids.size(); ++i) {
     if (problem.solids[i].friction == 0) continue;
     const Pose &pose0 = from.solids[i].pose, &pose1 = problem.solids[i].pose;
     visit_points(ribbon, from, i, [&](std::size_t s, const Station& at, std::size_t index) {
-      const ContactPoint& point = points[index];
+      const ContactPoint& point = points.all[index];
       const double normal_force = -from.stiffness * at.area * barrier(point.gap, from.distance).first;
       if (!(normal_force > 0)) return;
       const double eta = (1 - at.share) * chain.eta[s] + at.share * chain.eta[s + 1];
@@ -294,6 +297,7 @@ void set_friction(const Ribbon& ribbon, const ContactProblem& from, const std::v
       problem.friction.push_back(friction);
     });
   }
+  add_mesh_friction(ribbon, from.meshes, points.meshes, chain, k, problem.meshes, problem.friction);
 }
 
 double friction_value(const ContactProblem& problem, const Kinematics& k) {

@@ -62,7 +62,7 @@ struct ChainProblem {
 
 /// What a chain touches: points beside solids, and parts of itself.
 struct Touching {
-  std::vector<ContactPoint> points;
+  ContactPoints points;
   SelfContacts self;
 };
 
