@@ -96,7 +96,7 @@ Vec3 push_of(const solver::PathProblem& path, double t, const geometry::Chain& c
   solver::place_solids(path.ribbon, path.surroundings, t, contact);
   geometry::Kinematics k;
   geometry::forward_kinematics(path.ribbon, chain, k);
-  std::vector<solver::ContactPoint> points;
+  solver::ContactPoints points;
   solver::find_points(path.ribbon, contact, chain, k, points);
   math::ChainSystem system;
   solver::add_contact(path.ribbon, contact, chain, k, points, system);

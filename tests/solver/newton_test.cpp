@@ -108,6 +108,7 @@ void add_solids(const Chain& chain, const Kinematics& k, ChainProblem& problem) 
   contact.distance = 5;
   contact.thickness = 0.1;
   contact.stiffness = 3;
+  contact.width = 0.15;  // the strip's
   contact.along = 2;
   contact.across = 3;
   contact.slip = 0.3;
@@ -125,14 +126,14 @@ void add_solids(const Chain& chain, const Kinematics& k, ChainProblem& problem) 
 }
 
 double contact_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k) {
-  std::vector<solver::ContactPoint> points;
+  solver::ContactPoints points;
   find_points(ribbon, problem.contact, chain, k, points);
-  return contact_energy(ribbon, problem.contact, points) + friction_value(problem.contact, k);
+  return contact_energy(problem.contact, points) + friction_value(problem.contact, k);
 }
 
 void linearise_all(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                    const std::vector<double>& multipliers, math::ChainSystem& system) {
-  std::vector<solver::ContactPoint> points;
+  solver::ContactPoints points;
   find_points(ribbon, problem.contact, chain, k, points);
   linearise(ribbon, problem, chain, k, multipliers, points, system);
 }

@@ -164,7 +164,7 @@ void check_start(const Scene& scene) {
     one.obstacles = {surroundings.obstacles[i]};
     solver::ContactProblem contact;
     solver::place_solids(ribbon, one, 0, contact);
-    std::vector<solver::ContactPoint> points;
+    solver::ContactPoints points;
     solver::find_points(ribbon, contact, chain, kinematics, points);
     const double distance = solver::smallest_distance(contact, points);
     if (distance > contact.margin) continue;

@@ -207,7 +207,7 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
 }
 
 void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
-               const std::vector<double>& multipliers, const std::vector<ContactPoint>& contacts, ChainSystem& system) {
+               const std::vector<double>& multipliers, const ContactPoints& contacts, ChainSystem& system) {
   const auto n = static_cast<std::size_t>(ribbon.segments);
   system.links.resize(n + 1);
   system.base_fixed = problem.base_fixed;

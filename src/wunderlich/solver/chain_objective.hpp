@@ -85,7 +85,7 @@ void constraint_residuals(const geometry::Ribbon& ribbon, const ChainProblem& pr
 /// Fills `system` around the chain; `multipliers` are the current ones, one a row, `contacts` the chain's points.
 void linearise(const geometry::Ribbon& ribbon, const ChainProblem& problem, const geometry::Chain& chain,
                const geometry::Kinematics& kinematics, const std::vector<double>& multipliers,
-               const std::vector<ContactPoint>& contacts, math::ChainSystem& system);
+               const ContactPoints& contacts, math::ChainSystem& system);
 
 /// Takes the Hessian of `system` along straight lines in curvature and torsion, kappa and kappa eta, for the step. In
 /// these coordinates the bending energy is convex for every eta, in kappa and eta only for |eta| < 0.45, and fold

@@ -22,7 +22,9 @@ constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: statio
 constexpr int kInversePasses = 12;
 constexpr double kNeutral = 1e-7;  // eigenvalues below this (units of the shift) count as zero
 constexpr double kRounding = 1e-15;
-constexpr double kHeld = 1e-13;  // of the rows (m, rad, 1) at the end of a step in time; lengths beyond 1 m count
+constexpr double kHeld = 1e-13;     // of the rows (m, rad, 1) at the end of a step in time; lengths beyond 1 m count
+constexpr int kUnsettled = 3;       // first iterations, in which what sticks and what slips sorts itself ...
+constexpr double kSettling = 3e-4;  // ... unless steps are shorter than this
 constexpr double kSmallestShift = 1e-9, kLargestShift = 1e6, kShiftFactor = 5;
 
 struct Iterate {
@@ -172,7 +174,7 @@ void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chai
   work.contacts.clear();
   if (problem.contact.empty()) return;
   find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
-  work.value.contact = contact_energy(ribbon, problem.contact, work.contacts);
+  work.value.contact = contact_energy(problem.contact, work.contacts);
   work.value.friction = friction_value(problem.contact, work.kinematics);
 }
 
@@ -185,7 +187,7 @@ void value_trial(const Iterate& at) {
   if (contact.empty()) return;
   find_points(at.ribbon, contact, work.trial, work.trial_kinematics, work.trial_contacts);
   work.trial_value.contact = may_go(contact, work.contacts, work.trial_contacts)
-                                 ? contact_energy(at.ribbon, contact, work.trial_contacts)
+                                 ? contact_energy(contact, work.trial_contacts)
                                  : std::numeric_limits<double>::infinity();
   work.trial_value.friction = friction_value(contact, work.trial_kinematics);
 }
@@ -330,6 +332,9 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
+    const bool first_steps =
+        report.iterations <= kUnsettled && !(report.last_step < kSettling && report.iterations > 1);
+    work.contacts.settled = !options.inertial || problem.contact.friction.empty() || !first_steps;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.contacts, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
@@ -343,8 +348,8 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
     // A shift makes steps short that are not the last ones.
-    const bool small =
-        limit == 1 && report.last_step * (1 + shift) < options.tolerance && report.max_residual < options.tolerance;
+    const bool small = limit == 1 && report.last_step * (1 + shift) < options.tolerance &&
+                       report.max_residual < options.tolerance && work.contacts.settled;
     if (!conservative || (options.inertial && small)) {
       // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
       if (small && !options.inertial) return accept();

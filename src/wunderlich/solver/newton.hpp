@@ -50,7 +50,7 @@ struct NewtonWorkspace {
   std::vector<double> multipliers;
   std::vector<double> residuals, trial_residuals;
   ObjectiveValue value, trial_value;
-  std::vector<ContactPoint> contacts, trial_contacts;
+  ContactPoints contacts, trial_contacts;
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };
 

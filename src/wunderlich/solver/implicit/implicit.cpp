@@ -233,7 +233,7 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   state.elastic = now.elastic + now.barrier;
   place_solids(path.ribbon, path.surroundings, state.path.t, work.solids);
   find_points(path.ribbon, work.solids, state.path.chain, work.kinematics, work.before);
-  state.elastic += contact_energy(path.ribbon, work.solids, work.before);
+  state.elastic += contact_energy(work.solids, work.before);
   state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   state.base_reaction.setZero();
   work.multipliers.assign(row_count(work.problem), 0.0);
@@ -314,7 +314,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
-    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(path, scheme, state, work);
+    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(scheme, state, work);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state, halvings)) continue;
@@ -348,7 +348,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
   if (carries_frames(path)) note_frames(path, state.path);
   drag(ribbon, options, h, work.newton.kinematics, state.points);
   report.nearest = std::min(report.nearest, smallest_distance(work.problem.contact, work.newton.contacts));
-  report.touching = contact_count(work.problem.contact, work.newton.contacts);
+  report.touching = contact_count(work.newton.contacts);
   report.inelastic = state.level == kInelastic;
   if (report.inelastic) {  // the accelerations of an impulse are nothing to go on with
     state.level = level;
