@@ -168,12 +168,15 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
   return false;
 }
 
-/// Value of the iterate, with contact.
+/// Kinematics and value of the iterate, with contact.
 void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chain& current, NewtonWorkspace& work) {
+  const bool placed = work.placed;
+  work.placed = false;
+  if (!placed) geometry::forward_kinematics(ribbon, current, work.kinematics);
   work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
-  work.contacts.clear();
+  if (!placed) work.contacts.clear();
   if (problem.contact.empty()) return;
-  find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
+  if (!placed) find_points(ribbon, problem.contact, current, work.kinematics, work.contacts);
   work.value.contact = contact_energy(problem.contact, work.contacts);
   work.value.friction = friction_value(problem.contact, work.kinematics);
 }
@@ -282,6 +285,11 @@ void kick(const Ribbon& ribbon, Chain& current, NewtonWorkspace& work) {
   geometry::forward_kinematics(ribbon, current, work.kinematics);
 }
 
+/// Has friction been looked at closely, and does its exact Hessian do better than a majorant?
+bool is_settled(const NewtonReport& report) {
+  return report.iterations > kUnsettled || (report.iterations > 1 && report.last_step < kSettling);
+}
+
 /// What a stationary iterate is: a minimum (also where the softest mode is neutral, as in sliding along a closed
 /// band), a saddle, or a point that needs its last steps without a shift.
 enum class Stationary { no, minimum, saddle, unshift };
@@ -320,7 +328,6 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   Iterate at{ribbon, problem, work};
   double shift = 0;
   int polished = 0;
-  geometry::forward_kinematics(ribbon, current, work.kinematics);
   value_iterate(ribbon, problem, current, work);
   const auto accept = [&] {
     report.outcome = NewtonOutcome::converged;
@@ -332,9 +339,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
-    const bool first_steps =
-        report.iterations <= kUnsettled && !(report.last_step < kSettling && report.iterations > 1);
-    work.contacts.settled = !options.inertial || problem.contact.friction.empty() || !first_steps;
+    work.contacts.settled = !options.inertial || problem.contact.friction.empty() || is_settled(report);
     linearise(ribbon, problem, current, work.kinematics, lambda, work.contacts, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);

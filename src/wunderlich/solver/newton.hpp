@@ -51,6 +51,7 @@ struct NewtonWorkspace {
   std::vector<double> residuals, trial_residuals;
   ObjectiveValue value, trial_value;
   ContactPoints contacts, trial_contacts;
+  bool placed = false;     ///< the caller has found kinematics and contacts of the chain to start from; taken once
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };
 

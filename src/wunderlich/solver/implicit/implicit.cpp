@@ -81,9 +81,9 @@ bool start_clear(const PathProblem& path, const State& state, double h, Workspac
   find_points(ribbon, work.solids, state.path.chain, work.kinematics, work.before);
   set_friction(ribbon, work.solids, work.before, state.path.chain, work.kinematics, h, contact);
   const auto is_clear = [&](const Chain& chain) {
-    geometry::forward_kinematics(ribbon, chain, work.kinematics);
-    find_points(ribbon, contact, chain, work.kinematics, work.predicted);
-    return may_go(contact, work.before, work.predicted);
+    geometry::forward_kinematics(ribbon, chain, work.newton.kinematics);
+    find_points(ribbon, contact, chain, work.newton.kinematics, work.newton.contacts);
+    return work.newton.placed = may_go(contact, work.before, work.newton.contacts);
   };
   if (is_clear(work.trial)) return true;
   const Pose held = work.trial.base;

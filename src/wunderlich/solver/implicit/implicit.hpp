@@ -16,8 +16,8 @@ struct Workspace {
   geometry::Chain trial, start;
   std::vector<double> multipliers, residuals;
   std::vector<Vec3> x;
-  ContactProblem solids;            ///< where they are at the start of a step
-  ContactPoints before, predicted;  ///< the strip's points there, and where Newton's method starts
+  ContactProblem solids;  ///< where they are at the start of a step
+  ContactPoints before;   ///< the strip's points there
   Points points;
   ConserveWorkspace conserve;
   geometry::Kinematics kinematics;
