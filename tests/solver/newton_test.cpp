@@ -108,6 +108,7 @@ void add_solids(const Chain& chain, const Kinematics& k, ChainProblem& problem) 
   contact.distance = 5;
   contact.thickness = 0.1;
   contact.stiffness = 3;
+  contact.width = 0.15;  // the strip's
   contact.along = 2;
   contact.across = 3;
   contact.slip = 0.3;

@@ -23,10 +23,11 @@ struct Local {
 };
 
 /// Distance from a point, less a radius.
-Local from_point(const Vec3& offset, double radius) {
+inline Local from_point(const Vec3& offset, double radius) {
   const double r = offset.norm();
   if (r < coincident) return {-radius, Vec3::UnitZ()};
-  return {r - radius, offset / r, 1 / r};
+  const double over_r = 1 / r;
+  return {r - radius, over_r * offset, over_r};
 }
 
 /// A point in cylindrical coordinates; on the axis x stands for the radial direction.
@@ -37,21 +38,24 @@ struct Cylindrical {
   double curvature = 0;  ///< of the coordinate circle, none on the axis
 };
 
-Cylindrical cylindrical(const Vec3& p) {
+inline Cylindrical cylindrical(const Vec3& p) {
   const double r = p.head<2>().norm();
   if (r < coincident) return {};
-  const Vec3 radial(p.x() / r, p.y() / r, 0);
-  return {r, radial, {-radial.y(), radial.x(), 0}, 1 / r};
+  const double over_r = 1 / r;
+  const Vec3 radial(over_r * p.x(), over_r * p.y(), 0);
+  return {r, radial, {-radial.y(), radial.x(), 0}, over_r};
 }
 
 /// Distance from the z axis, less a radius.
-Local from_axis(const Cylindrical& c, double radius) { return {c.r - radius, c.radial, 0, c.curvature, c.around}; }
+inline Local from_axis(const Cylindrical& c, double radius) {
+  return {c.r - radius, c.radial, 0, c.curvature, c.around};
+}
 
-Local local_distance(const HalfSpace&, const Vec3& p) { return {p.z(), Vec3::UnitZ()}; }
+inline Local local_distance(const HalfSpace&, const Vec3& p) { return {p.z(), Vec3::UnitZ()}; }
 
-Local local_distance(const Sphere& sphere, const Vec3& p) { return from_point(p, sphere.radius); }
+inline Local local_distance(const Sphere& sphere, const Vec3& p) { return from_point(p, sphere.radius); }
 
-Local local_distance(const Cylinder& cylinder, const Vec3& p) {
+inline Local local_distance(const Cylinder& cylinder, const Vec3& p) {
   const Cylindrical c = cylindrical(p);
   const double side = c.r - cylinder.radius;
   const double end = std::abs(p.z()) - cylinder.half_length;
@@ -67,12 +71,12 @@ Local local_distance(const Cylinder& cylinder, const Vec3& p) {
   return side > end ? from_axis(c, cylinder.radius) : Local{end, axial};
 }
 
-Local local_distance(const Capsule& capsule, const Vec3& p) {
+inline Local local_distance(const Capsule& capsule, const Vec3& p) {
   if (std::abs(p.z()) < capsule.half_length) return from_axis(cylindrical(p), capsule.radius);
   return from_point({p.x(), p.y(), p.z() - std::copysign(capsule.half_length, p.z())}, capsule.radius);
 }
 
-Local local_distance(const Box& box, const Vec3& p) {
+inline Local local_distance(const Box& box, const Vec3& p) {
   const Vec3 beyond = p.cwiseAbs() - box.half_size;
   const Vec3 outside = beyond.cwiseMax(0.0);
   const Vec3 sign(std::copysign(1.0, p.x()), std::copysign(1.0, p.y()), std::copysign(1.0, p.z()));
@@ -106,6 +110,24 @@ Distance distance(const Shape& shape, const Vec3& point) {
   }
   if (local.excess != 0) result.hessian += local.excess * local.direction * local.direction.transpose();
   return result;
+}
+
+void distances(const Shape& shape, std::size_t count, const Vec3* points, double* values, Vec3* normals) {
+  const auto fill = [&](const auto& solid) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Local local = local_distance(solid, points[i]);
+      values[i] = local.value;
+      normals[i] = local.normal;
+    }
+  };
+  std::visit(fill, shape);
+}
+
+Bend bend(const Shape& shape, const Vec3& point) {
+  const Local local = std::visit([&](const auto& solid) { return local_distance(solid, point); }, shape);
+  if (local.curvature == 0) return {{local.excess, 0}, {local.direction, Vec3::Zero()}};
+  const Vec3 first = local.excess != 0 ? local.direction : Vec3(local.normal.unitOrthogonal());
+  return {{local.curvature + local.excess, local.curvature}, {first, local.normal.cross(first)}};
 }
 
 Distance distance(const Shape& shape, const Pose& pose, const Vec3& point) {

@@ -1,6 +1,7 @@
 /// Solids that a strip can touch, and how far a point is from their surface.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <variant>
 
@@ -47,7 +48,17 @@ struct Distance {
 /// The point is given in the solid's own frame, and so is the result.
 Distance distance(const Shape& shape, const Vec3& point);
 
-/// The same in space; `pose` is where the solid's own frame stands.
+/// Values and normals alone, of many points at once.
+void distances(const Shape& shape, std::size_t count, const Vec3* points, double* values, Vec3* normals);
+
+/// The Hessian of the distance as its principal curvatures [1/m] and directions, two square to the normal.
+struct Bend {
+  double curvature[2];
+  Vec3 direction[2];
+};
+Bend bend(const Shape& shape, const Vec3& point);
+
+/// Distance in space; `pose` is where the solid's own frame stands.
 Distance distance(const Shape& shape, const Pose& pose, const Vec3& point);
 
 }  // namespace wunderlich::contact

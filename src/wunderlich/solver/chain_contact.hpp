@@ -34,6 +34,7 @@ struct ContactProblem {
   double thickness = 0;            ///< that stays between surface and solid [m]
   double margin = 0;               ///< that points keep so that facets between them stay out [m]
   double stiffness = 0;            ///< of the barrier, per area [N/m^3]
+  double width = 0;                ///< of the strip [m]
   int along = 1;                   ///< cells of points along a segment
   int across = 1;                  ///< and across it
   std::vector<Friction> friction;  ///< one a point that rubs, segments in decreasing order
@@ -41,26 +42,44 @@ struct ContactProblem {
   bool empty() const { return solids.empty() && meshes.solids.empty(); }
 };
 
-/// One point of the strip beside one solid, in the solid's own frame.
-struct ContactPoint {
-  Vec3 at;       ///< [m]
-  Vec3 normal;   ///< of the solid there, outward
-  double gap;    ///< distance beyond thickness and margin; of far points a bound from below, with its gradient [m]
-  Mat3 hessian;  ///< of the distance
+/// One facet beside one solid, in the solid's own frame: where its points are, and how near any of them can be.
+struct ContactFacet {
+  Vec3 start, along;  ///< first node, and from it to the second one [m]
+  Vec3 across[2];     ///< from a node to the point at v = 1 on its ruling
+  Vec3 normal;        ///< of the solid, where it is nearest to the facet's middle
+  double gap;         ///< distance of the middle beyond thickness and margin [m]
+  double least;       ///< none of its points has a smaller gap [m]
+  bool near;          ///< its points are looked at
+  std::size_t first;  ///< of its points, if so
+  Vec3 middle() const { return start + 0.5 * along; }
+  Vec3 at(double f, double v) const { return start + f * along + v * ((1 - f) * across[0] + f * across[1]); }
+};
+
+/// A point that feels a solid.
+struct Touch {
+  std::size_t facet, point;  ///< indices
+  double share, v;           ///< f, and across the strip [m]
+  double area;               ///< that it stands for [m^2]
+  double log;                ///< of its gap over the barrier's distance
 };
 
 /// A strip beside all solids.
 struct ContactPoints {
-  std::vector<ContactPoint> all;  ///< beside round ones and planes
-  MeshPoints meshes;
-  void clear() { all.clear(), meshes.pairs.clear(); }
+  std::vector<ContactFacet> facets;  ///< of the first segment with each solid, of the second one ...
+  std::vector<Vec3> at, normal;      ///< of near facets' points, in the solids' own frames
+  std::vector<double> gap;           ///< distance beyond thickness and margin [m]
+  std::vector<Touch> touches;        ///< in the facets' order
+  MeshPoints meshes;                 ///< beside solids of triangles; the others are those of round ones and planes
+  bool settled = true;               ///< false: far from the minimum, where friction's Hessian is that of a majorant
+  void clear() { facets.clear(), at.clear(), normal.clear(), gap.clear(), touches.clear(), meshes.pairs.clear(); }
 };
 
 /// The surroundings' solids at a time, with points dense enough that no solid's curve cuts a facet between them.
 void place_solids(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
                   ContactProblem& problem);
 
-/// All points of all solids; nothing else of the chain is looked at by what follows.
+/// All points near solids; nothing else of the chain is looked at by what follows. Nodes' rulings belong to the segment
+/// before.
 void find_points(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,
                  const geometry::Kinematics& kinematics, ContactPoints& points);
 
@@ -71,11 +90,12 @@ double contact_energy(const geometry::Ribbon& ribbon, const ContactProblem& prob
 /// lose more than nine tenths of its gap within the barrier's distance. Buffers of `to` are of use.
 bool may_go(const ContactProblem& problem, const ContactPoints& from, ContactPoints& to);
 
-/// Distance of the nearest point to a solid beyond the thickness [m]; infinite without solids.
+/// Distance of the nearest point to a solid beyond the thickness [m], where none is near a bound from below; infinite
+/// without solids.
 double smallest_distance(const ContactProblem& problem, const ContactPoints& points);
 
 /// Points that feel a solid.
-int contact_count(const ContactProblem& problem, const ContactPoints& points);
+int contact_count(const ContactPoints& points);
 
 /// Work that moving solids do on the strip when they go from one place to the other while the strip's points are
 /// `before`, then `after`: with the force before in the share 1 - `late`, after in the share `late` [J].

@@ -22,7 +22,9 @@ constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: statio
 constexpr int kInversePasses = 12;
 constexpr double kNeutral = 1e-7;  // eigenvalues below this (units of the shift) count as zero
 constexpr double kRounding = 1e-15;
-constexpr double kHeld = 1e-13;  // of the rows (m, rad, 1) at the end of a step in time; lengths beyond 1 m count
+constexpr double kHeld = 1e-13;     // of the rows (m, rad, 1) at the end of a step in time; lengths beyond 1 m count
+constexpr int kUnsettled = 3;       // first iterations, in which what sticks and what slips sorts itself ...
+constexpr double kSettling = 3e-4;  // ... unless steps are shorter than this
 constexpr double kSmallestShift = 1e-9, kLargestShift = 1e6, kShiftFactor = 5;
 
 struct Iterate {
@@ -166,16 +168,20 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
   return false;
 }
 
-/// Value of the iterate, with contact.
+/// Kinematics and value of the iterate, with contact.
 void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chain& current, NewtonWorkspace& work) {
+  const bool placed = work.placed;
+  work.placed = false;
+  if (!placed) geometry::forward_kinematics(ribbon, current, work.kinematics);
   work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
-  work.touching.points.clear();
-  if (problem.self.active()) {
-    find_pairs(ribbon, problem.self, current, work.kinematics, work.search, work.touching.self);
-    work.value.contact = self_energy(ribbon, problem.self, work.touching.self);
+  const bool feels = problem.self.active(), meets = !problem.contact.empty();
+  if (!placed) {
+    work.touching.points.clear();
+    if (feels) find_pairs(ribbon, problem.self, current, work.kinematics, work.search, work.touching.self);
+    if (meets) find_points(ribbon, problem.contact, current, work.kinematics, work.touching.points);
   }
-  if (problem.contact.empty()) return;
-  find_points(ribbon, problem.contact, current, work.kinematics, work.touching.points);
+  if (feels) work.value.contact = self_energy(ribbon, problem.self, work.touching.self);
+  if (!meets) return;
   work.value.contact += contact_energy(ribbon, problem.contact, work.touching.points);
   work.value.friction = friction_value(problem.contact, work.kinematics);
 }
@@ -296,6 +302,11 @@ void kick(const Iterate& at, Chain& current) {
   }
 }
 
+/// Has friction been looked at closely, and does its exact Hessian do better than a majorant?
+bool is_settled(const NewtonReport& report) {
+  return report.iterations > kUnsettled || (report.iterations > 1 && report.last_step < kSettling);
+}
+
 /// What a stationary iterate is: a minimum (also where the softest mode is neutral, as in sliding along a closed
 /// band), a saddle, or a point that needs its last steps without a shift.
 enum class Stationary { no, minimum, saddle, unshift };
@@ -334,7 +345,6 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   Iterate at{ribbon, problem, work};
   double shift = 0;
   int polished = 0;
-  geometry::forward_kinematics(ribbon, current, work.kinematics);
   value_iterate(ribbon, problem, current, work);
   const auto accept = [&] {
     report.outcome = NewtonOutcome::converged;
@@ -346,6 +356,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
+    work.touching.points.settled = !options.inertial || problem.contact.friction.empty() || is_settled(report);
     linearise(ribbon, problem, current, work.kinematics, lambda, work.touching, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
     const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
@@ -359,8 +370,8 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
     // A shift makes steps short that are not the last ones.
-    const bool small =
-        limit == 1 && report.last_step * (1 + shift) < options.tolerance && report.max_residual < options.tolerance;
+    const bool small = limit == 1 && report.last_step * (1 + shift) < options.tolerance &&
+                       report.max_residual < options.tolerance && work.contacts.settled;
     if (!conservative || (options.inertial && small)) {
       // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
       if (small && !options.inertial) return accept();

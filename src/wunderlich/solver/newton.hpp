@@ -51,6 +51,7 @@ struct NewtonWorkspace {
   std::vector<double> residuals, trial_residuals;
   ObjectiveValue value, trial_value;
   Touching touching, trial_touching;
+  bool placed = false;  ///< the caller has found kinematics and contacts of the chain to start from; taken once
   SelfSearch search;
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };

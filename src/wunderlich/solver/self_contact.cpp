@@ -144,14 +144,17 @@ void find_candidates(const Ribbon& ribbon, const SelfContact& problem, const std
   }
 }
 
-/// Does the edge from p to q go through the triangle?
+/// Does the edge from p to q go through the triangle? Not if an end lies in its plane, to rounding.
 bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  constexpr double kRounding = 1e-9;
   const auto volume = [](const Vec3& o, const Vec3& x, const Vec3& y, const Vec3& z) {
-    return (x - o).cross(y - o).dot(z - o) > 0;
+    return (x - o).cross(y - o).dot(z - o);
   };
-  if (volume(p, a, b, c) == volume(q, a, b, c)) return false;
-  const bool side = volume(p, q, a, b);
-  return side == volume(p, q, b, c) && side == volume(p, q, c, a);
+  const double least = kRounding * (b - a).cross(c - a).norm() * (q - p).norm();
+  const double above = volume(p, a, b, c), below = volume(q, a, b, c);
+  if (std::abs(above) <= least || std::abs(below) <= least || (above > 0) == (below > 0)) return false;
+  const bool side = volume(p, q, a, b) > 0;
+  return side == (volume(p, q, b, c) > 0) && side == (volume(p, q, c, a) > 0);
 }
 
 void find_corners(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::vector<Vec3>& corners) {

@@ -57,7 +57,7 @@ void find_held(const Ribbon& ribbon, const Options& options, const ChainProblem&
 
 }  // namespace
 
-double work_done(const PathProblem& path, const Scheme& scheme, const State& state, const Workspace& work) {
+double work_done(const Scheme& scheme, const State& state, const Workspace& work) {
   return load_work(work.problem, state.points.x, work.x) +
          support_work(work.problem, scheme, state, work.start, work, work.residuals) +
          solid_work(path.ribbon, work.solids, work.before, work.problem.contact, work.newton.touching.points,

@@ -84,11 +84,13 @@ bool start_clear(const PathProblem& path, const State& state, double h, Workspac
   SelfSearch& search = work.newton.search;
   if (self.active()) find_pairs(ribbon, self, state.path.chain, work.kinematics, search, work.self_before);
   const auto is_clear = [&](const Chain& chain) {
-    geometry::forward_kinematics(ribbon, chain, work.kinematics);
-    find_points(ribbon, contact, chain, work.kinematics, work.predicted);
-    if (!may_go(contact, work.before, work.predicted)) return false;
-    return !self.active() ||
-           travel(ribbon, self, work.self_before, chain, work.kinematics, search, work.self_predicted);
+    geometry::forward_kinematics(ribbon, chain, work.newton.kinematics);
+    Touching& here = work.newton.touching;
+    find_points(ribbon, contact, chain, work.newton.kinematics, here.points);
+    work.newton.placed = may_go(contact, work.before, here.points) &&
+                         (!self.active() || travel(ribbon, self, work.self_before, chain, work.newton.kinematics,
+                                                   work.newton.search, here.self));
+    return work.newton.placed;
   };
   if (is_clear(work.trial)) return true;
   const Pose held = work.trial.base;
@@ -323,7 +325,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
-    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(path, scheme, state, work);
+    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(scheme, state, work);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state, halvings)) continue;
@@ -357,7 +359,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
   if (carries_frames(path)) note_frames(path, state.path);
   drag(ribbon, options, h, work.newton.kinematics, state.points);
   report.nearest = std::min(report.nearest, smallest_distance(work.problem.contact, work.newton.touching.points));
-  report.touching = contact_count(work.problem.contact, work.newton.touching.points);
+  report.touching = contact_count(work.newton.touching.points);
   if (const SelfContact& self = work.problem.self; self.active()) {
     report.nearest = std::min(report.nearest, smallest_distance(self, work.newton.touching.self));
     report.touching += static_cast<int>(work.newton.touching.self.pairs.size());

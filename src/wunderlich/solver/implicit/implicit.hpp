@@ -16,9 +16,9 @@ struct Workspace {
   geometry::Chain trial, start;
   std::vector<double> multipliers, residuals;
   std::vector<Vec3> x;
-  ContactProblem solids;                     ///< where they are at the start of a step
-  ContactPoints before, predicted;           ///< the strip's points there, and where Newton's method starts
-  SelfContacts self_before, self_predicted;  ///< the same of the strip's own parts
+  ContactProblem solids;     ///< where they are at the start of a step
+  ContactPoints before;      ///< the strip's points there
+  SelfContacts self_before;  ///< the same of the strip's own parts
   Points points;
   ConserveWorkspace conserve;
   geometry::Kinematics kinematics;
