@@ -27,6 +27,9 @@ GTEST_SHUFFLE=1 ctest --preset release -j "$(nproc)" --schedule-random --repeat 
 echo "nightly: 100,000 random steps of the implicit method"
 WUNDERLICH_SOAK_STEPS=100000 build/release/test_implicit --gtest_filter=Soak.Long
 
+echo "nightly: 1000 random drops on solids"
+WUNDERLICH_DROPS=1000 build/release/test_implicit --gtest_filter=Drops.Random
+
 echo "nightly: 30 minutes of fuzzing"
 tools/fuzz.sh 1800
 

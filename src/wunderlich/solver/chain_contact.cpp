@@ -298,8 +298,9 @@ void set_friction(const Ribbon& ribbon, const ContactProblem& from, const Contac
     friction.across = touch->v;
     // Exactly where the point is, moved along as the solid's points are.
     const Vec3& at = points.at[touch->point];
-    friction.from = k.r[s + 1] + friction.along * k.frame[s].col(2) + friction.across * k.frame[s].col(1) +
-                    pose1.position + pose1.frame * at - pose0.position - pose0.frame * at;
+    friction.carried = pose1.position + pose1.frame * at - pose0.position - pose0.frame * at;
+    friction.from =
+        k.r[s + 1] + friction.along * k.frame[s].col(2) + friction.across * k.frame[s].col(1) + friction.carried;
     friction.normal = pose1.frame * points.normal[touch->point];
     friction.force = problem.solids[i].friction * force_on(from, points, *touch);
     problem.friction.push_back(friction);

@@ -17,6 +17,7 @@ struct Friction {
   std::size_t segment;
   double along, across;  ///< of the point from the segment's far node, along d3 and d2 [m]
   Vec3 from;             ///< where it would be had it gone with the solid [m]
+  Vec3 carried;          ///< the solid's way there in the step [m]
   Vec3 normal;
   double force;  ///< coefficient times normal force [N]
 };
@@ -109,6 +110,9 @@ void set_friction(const geometry::Ribbon& ribbon, const ContactProblem& from, co
 
 /// What is minimised for it: force times way, rounded off where the way is short [J].
 double friction_value(const ContactProblem& problem, const geometry::Kinematics& kinematics);
+
+/// Work of the solids on the strip by friction, as far as it is not lost in sliding [J].
+double friction_work(const ContactProblem& problem, const geometry::Kinematics& kinematics);
 
 /// Derivatives of barrier and friction, as terms of the sweep. `points` are those of the chain.
 void add_contact(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,

@@ -105,15 +105,16 @@ Slide slide_of(const Friction& friction, const Kinematics& k) {
   return {way - friction.normal.dot(way) * friction.normal, arm};
 }
 
+/// Share of the full force over the way, (2 share - share^2) / way; finite at rest.   @eq Li2020:14
+inline double pull_of(double way, double slip) { return way < slip ? (2 - way / slip) / slip : 1 / way; }
+
 /// Force times way, smooth at rest.   @eq Li2020:14
 void add_friction(const Friction& friction, double slip, bool settled, const Slide& slide, FacetSums& sums) {
-  const double way = slide.way.norm(), over_way = 1 / way, over_slip = 1 / slip, share = way * over_slip;
-  // (2 share - share^2) / way and its derivative, both finite at rest
-  const double pull = friction.force * (share < 1 ? (2 - share) * over_slip : over_way);
-  const double more = friction.force * (share < 1 ? 2 * (1 - share) * over_slip : 0);
+  const double way = slide.way.norm(), pull = friction.force * pull_of(way, slip);
+  const double more = friction.force * (way < slip ? 2 * (1 - way / slip) / slip : 0);
   // What will stick has far more stiffness than it shows on the way there. A parabola that touches here and lies above
   // everywhere else ends within reach of the minimum; the exact Hessian overshoots by what it does not see.
-  const Vec3 onward = way > 0 ? Vec3(over_way * slide.way) : friction.normal.unitOrthogonal();
+  const Vec3 onward = way > 0 ? Vec3((1 / way) * slide.way) : friction.normal.unitOrthogonal();
   const Lever lever{slide.arm, {0, 0}};
   const Eight along = moved(sums, lever, onward);
   sums.hessian.add(settled ? more : pull, along);
@@ -171,6 +172,15 @@ double friction_value(const ContactProblem& problem, const Kinematics& k) {
     sum += friction.force * (share < 1 ? way * share * (1 - share / 3) : way - problem.slip / 3);
   }
   return sum;
+}
+
+double friction_work(const ContactProblem& problem, const Kinematics& k) {
+  double work = 0;
+  for (const Friction& friction : problem.friction) {
+    const Vec3 way = slide_of(friction, k).way;
+    work -= friction.force * pull_of(way.norm(), problem.slip) * way.dot(friction.carried);
+  }
+  return work;
 }
 
 }  // namespace wunderlich::solver

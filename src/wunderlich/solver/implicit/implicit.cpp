@@ -70,8 +70,16 @@ void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
   chain.base.frame = math::exp_map(share * turn) * now.base.frame;
 }
 
-/// Where Newton's method may start: the prediction if nothing is in its way, or else where the strip is. False if that
-/// is where a moving solid goes. Says what rubs as well.
+/// What is held of the base is where it is held.
+void keep_held(const ChainProblem& problem, const Pose& held, Pose& base) {
+  for (int c = 0; c < 3; ++c) {
+    if (problem.base_fixed[static_cast<std::size_t>(c)]) base.position[c] = held.position[c];
+  }
+  if (problem.base_fixed[3]) base.frame = held.frame;
+}
+
+/// Where Newton's method may start: the prediction if nothing is in its way, or else where the strip is, or where a
+/// moving solid would carry it. False if something is in the way of all these. Says what rubs as well.
 bool start_clear(const PathProblem& path, const State& state, double h, Workspace& work) {
   const Ribbon& ribbon = path.ribbon;
   ContactProblem& contact = work.problem.contact;
@@ -95,11 +103,17 @@ bool start_clear(const PathProblem& path, const State& state, double h, Workspac
   if (is_clear(work.trial)) return true;
   const Pose held = work.trial.base;
   work.trial = state.path.chain;
-  for (int c = 0; c < 3; ++c) {
-    if (work.problem.base_fixed[static_cast<std::size_t>(c)]) work.trial.base.position[c] = held.position[c];
+  keep_held(work.problem, held, work.trial.base);
+  if (is_clear(work.trial)) return true;
+  for (std::size_t i = 0; i < contact.solids.size(); ++i) {
+    const Pose &from = work.solids.solids[i].pose, &to = contact.solids[i].pose;
+    const Quat turn = to.frame * from.frame.conjugate();
+    work.trial.base.position = to.position + turn * (state.path.chain.base.position - from.position);
+    work.trial.base.frame = turn * state.path.chain.base.frame;
+    keep_held(work.problem, held, work.trial.base);
+    if (is_clear(work.trial)) return true;
   }
-  if (work.problem.base_fixed[3]) work.trial.base.frame = held.frame;
-  return is_clear(work.trial);
+  return false;
 }
 
 /// Supports, loads and inertia of a step that ends at t1; `chain` gets its prescribed base.
