@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/paths.hpp"
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "scene/messages.hpp"
 #include "wunderlich/contact/triangle_mesh.hpp"
-#include "wunderlich/scene/start.hpp"
+#include "wunderlich/scene/run.hpp"
 
 namespace wunderlich::scene {
 namespace {
@@ -38,7 +38,10 @@ const contact::TriangleMesh& mesh_of(const Scene& scene, std::size_t i = 0) {
 
 std::string indented(const std::string& text) {
   std::string out = "      ";
-  for (const char c : text) out += c == '\n' ? "\n      " : std::string(1, c);
+  for (const char c : text) {
+    out += c;
+    if (c == '\n') out.append(6, ' ');
+  }
   return out;
 }
 
@@ -118,14 +121,14 @@ TEST(BadMesh, SurfacesThatAreNotASolids) {
 
 TEST(BadMesh, TooLarge) {
   std::string fan = kCorners + "f";
-  for (int i = 0; i < 20003; ++i) fan += " " + std::to_string(1 + i % 4);
+  for (int i = 0; i < 20003; ++i) fan.append(" ").append(std::to_string(1 + i % 4));
   expect_all(refused(fan + "\n"), {"obj:5: more than 20000 triangles"});
 }
 
 TEST(BadMesh, KeysAndFiles) {
   const auto refuse = [](const std::string& keys) { return message_of(kStrip + "obstacles:\n  - {" + keys + "}\n"); };
   expect_all(refuse("shape: mesh"), {"bad.yaml:3:5: obstacles.0.file: is missing", "`obj`"});
-  expect_all(refuse("shape: mesh, file: nowhere.obj"), {"bad.yaml:3:24: obstacles.0.file: nowhere.obj: no such file"});
+  expect_all(refuse("shape: mesh, file: nowhere.obj"), {"bad.yaml:3:25: obstacles.0.file: nowhere.obj: no such file"});
   expect_all(refuse("shape: mesh, file: ."), {"obstacles.0.file", "is a folder"});
   expect_all(refuse("shape: mesh, file: []"), {"obstacles.0.file: a list of 0"});
   expect_all(refuse("shape: mesh, file: a.obj, obj: v"), {"obstacles.0.file: not with `obj`"});

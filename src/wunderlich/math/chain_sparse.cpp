@@ -4,42 +4,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "wunderlich/math/rotation.hpp"
 
 namespace wunderlich::math {
-
-void RepeatedMatrix::note(int size) {
-  noting_ = true;
-  size_ = size;
-  entries_.clear();
-}
-
-void RepeatedMatrix::repeat() {
-  noting_ = false;
-  next_ = 0;
-  std::fill(lower_.valuePtr(), lower_.valuePtr() + lower_.nonZeros(), 0.0);
-}
-
-void RepeatedMatrix::add(int row, int column, double value) {
-  if (noting_) {
-    entries_.emplace_back(std::max(row, column), std::min(row, column), value);
-  } else {
-    lower_.valuePtr()[slot_[next_++]] += value;
-  }
-}
-
-void RepeatedMatrix::settle() {
-  lower_.resize(size_, size_);
-  lower_.setFromTriplets(entries_.begin(), entries_.end());
-  slot_.clear();
-  for (const auto& entry : entries_) {
-    const int* first = lower_.innerIndexPtr() + lower_.outerIndexPtr()[entry.col()];
-    const int* last = lower_.innerIndexPtr() + lower_.outerIndexPtr()[entry.col() + 1];
-    slot_.push_back(static_cast<int>(std::lower_bound(first, last, entry.row()) - lower_.innerIndexPtr()));
-  }
-}
 
 namespace {
 
@@ -100,60 +70,6 @@ void place_unknowns(const ChainSystem& system, SparseWorkspace& work) {
     work.fixed[static_cast<std::size_t>(work.places[0].v + c)] = system.base_fixed[static_cast<std::size_t>(c)];
     work.fixed[static_cast<std::size_t>(work.theta_base + c)] = system.base_fixed[static_cast<std::size_t>(3 + c)];
   }
-}
-
-/// Forces and torques that each joint and span carries, and the exact gradient.
-void find_wrenches(const ChainSystem& system, SparseWorkspace& work, Vec6& base_gradient) {
-  const std::size_t count = system.links.size();
-  work.wrench.assign(count, {Vec3::Zero(), Vec3::Zero(), Vec2::Zero(), 0});
-  std::vector<NodeWrench>& w = work.wrench;  // first each node's own, then with everything beyond
-  base_gradient.setZero();
-  for (std::size_t i = 0; i < count; ++i) {
-    const ChainLink& link = system.links[i];
-    w[i].force += vec(link.force);
-    if (i + 1 < count) w[i].gradient += link.grad_a, w[i + 1].gradient += link.grad_b;
-    if (i < system.turns.size()) {
-      const TurnTerm& turn = system.turns[i];
-      w[i].torque += Vec3(turn.hessian[0][3], turn.hessian[1][3], turn.hessian[2][3]);
-    }
-  }
-  const auto add = [&](int node, const Vec3& force, const Vec3& torque) {
-    if (node < 0) {
-      base_gradient.head<3>() += force;
-      base_gradient.tail<3>() += torque;
-    } else {
-      w[static_cast<std::size_t>(node)].force += force;
-      w[static_cast<std::size_t>(node)].torque += torque;
-    }
-  };
-  for (const PoseTerm& term : system.pose_terms) add(term.node, term.gradient.head<3>(), term.gradient.tail<3>());
-  for (const ChainRow& row : system.rows) {
-    add(row.node, row.multiplier * row.v, row.multiplier * row.theta);
-    add(-1, row.multiplier * row.base_v, row.multiplier * row.base_theta);
-    if (row.node >= 0) w[static_cast<std::size_t>(row.node)].gradient += row.multiplier * row.u;
-    w[0].gradient += row.multiplier * row.first_u;
-  }
-  for (const SurfaceTerm& term : system.surfaces) {
-    add(term.node + 1, term.gradient.head<3>(), Vec3::Zero());
-    add(term.node, Vec3::Zero(), term.gradient.segment<3>(3));
-    w[static_cast<std::size_t>(term.node)].pull += term.gradient[6];
-    w[static_cast<std::size_t>(term.node) + 1].pull += term.gradient[7];
-  }
-  for (const SurfacePoint& point : system.points) {
-    add(point.node, point.gradient, point.arm.cross(point.gradient));
-    w[static_cast<std::size_t>(point.node)].pull += point.slant.dot(point.gradient);
-  }
-  for (std::size_t i = count; i-- > 0;) {
-    const Vec3 b0 = vec(system.links[i].axis[0]), b1 = vec(system.links[i].axis[1]);
-    if (i + 1 < count) {
-      w[i].force += w[i + 1].force;
-      w[i].torque += w[i + 1].torque + vec(system.links[i].span).cross(w[i + 1].force);
-    }
-    w[i].pull += b1.dot(w[i].torque);
-    w[i].gradient += Vec2(b0.dot(w[i].torque), w[i].pull);
-  }
-  base_gradient.head<3>() += w[0].force;
-  base_gradient.tail<3>() += w[0].torque;
 }
 
 /// Fills matrix and right-hand side, entry by entry in an order that the key decides.
@@ -370,19 +286,21 @@ class Assembly {
   double held_turn_ = 0, held_move_ = 0;
 };
 
-/// Solves, and improves once: pivots are taken as they come.
+/// Solves, and improves the solution where it needs it: pivots are taken as they come.
 bool solve(SparseWorkspace& work) {
-  constexpr double kExact = 1e-6;  // of the right-hand side
+  constexpr double kExact = 1e-12, kUseful = 1e-6;  // of the right-hand side
+  constexpr int kMostPasses = 3;
   const auto matrix = work.matrix.lower().selfadjointView<Eigen::Lower>();
+  const double size = work.right.norm();
   work.solution = work.factor.solve(work.right);
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0;; ++pass) {
     work.rest = work.right;
     work.rest.noalias() -= matrix * work.solution;
+    const double rest = work.rest.norm();
+    if (rest <= kExact * size) return true;
+    if (pass == kMostPasses || !(rest < std::numeric_limits<double>::infinity())) return rest <= kUseful * size;
     work.solution += work.factor.solve(work.rest);
   }
-  work.rest = work.right;
-  work.rest.noalias() -= matrix * work.solution;
-  return work.solution.allFinite() && work.rest.norm() <= kExact * work.right.norm();
 }
 
 void read_step(const ChainSystem& system, const SparseWorkspace& work, ChainStep& step) {

@@ -5,33 +5,12 @@
 #pragma once
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 #include <vector>
 
 #include "wunderlich/math/chain_sweep.hpp"
+#include "wunderlich/math/repeated_matrix.hpp"
 
 namespace wunderlich::math {
-
-/// A symmetric sparse matrix that is filled again and again in the same order of entries.
-class RepeatedMatrix {
- public:
-  /// Starts anew: the entries that follow are noted, and make the pattern.
-  void note(int size);
-  /// Starts with all zeros; the entries that follow are those noted.
-  void repeat();
-  void add(int row, int column, double value);
-  /// Ends the filling after `note`.
-  void settle();
-  const Eigen::SparseMatrix<double>& lower() const { return lower_; }
-
- private:
-  bool noting_ = false;
-  int size_ = 0;
-  std::size_t next_ = 0;
-  std::vector<Eigen::Triplet<double>> entries_;
-  std::vector<int> slot_;  ///< where each entry goes among the values
-  Eigen::SparseMatrix<double> lower_;
-};
 
 /// Unknowns of one node in the matrix; -1 where there are none.
 struct NodePlaces {
@@ -60,6 +39,9 @@ struct SparseWorkspace {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor;
   Eigen::VectorXd right, solution, rest;
 };
+
+/// Forces and torques that each joint and span carries, and the exact gradient.
+void find_wrenches(const ChainSystem& system, SparseWorkspace& work, Vec6& base_gradient);
 
 /// As chain_step, for systems with couplings; no followers.
 bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step);

@@ -170,7 +170,7 @@ void check_start(const Scene& scene) {
                      scene.initial.shape == InitialShape::coil;
   if (!known) return;
   const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
-  if (surroundings.contact.self && scene.initial.shape == InitialShape::coil) {
+  if (surroundings.contact.self && scene.solver.method != Method::equilibrium) {
     const std::string problem = start_of(scene, ribbon).failure;
     if (!problem.empty()) throw InputError(scene.contact_place + ": " + problem);
   }

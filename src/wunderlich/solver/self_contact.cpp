@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/contact/travel.hpp"
+#include "wunderlich/contact/triangle_mesh.hpp"
 
 namespace wunderlich::solver {
 
@@ -144,19 +144,6 @@ void find_candidates(const Ribbon& ribbon, const SelfContact& problem, const std
   }
 }
 
-/// Does the edge from p to q go through the triangle? Not if an end lies in its plane, to rounding.
-bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  constexpr double kRounding = 1e-9;
-  const auto volume = [](const Vec3& o, const Vec3& x, const Vec3& y, const Vec3& z) {
-    return (x - o).cross(y - o).dot(z - o);
-  };
-  const double least = kRounding * (b - a).cross(c - a).norm() * (q - p).norm();
-  const double above = volume(p, a, b, c), below = volume(q, a, b, c);
-  if (std::abs(above) <= least || std::abs(below) <= least || (above > 0) == (below > 0)) return false;
-  const bool side = volume(p, q, a, b) > 0;
-  return side == (volume(p, q, b, c) > 0) && side == (volume(p, q, c, a) > 0);
-}
-
 void find_corners(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::vector<Vec3>& corners) {
   corners.clear();
   for (std::size_t i = 0; i < chain.eta.size(); ++i) {
@@ -273,19 +260,15 @@ double self_energy(const Ribbon& ribbon, const SelfContact& problem, const SelfC
   return problem.stiffness * sum;
 }
 
-void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Chain& chain, const Kinematics& k,
-                      const SelfContacts& contacts, math::ChainSystem& system) {
+void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Kinematics& k, const SelfContacts& contacts, math::ChainSystem& system) {
   if (contacts.pairs.empty()) return;
   Gather gather;
   std::vector<Vec3> force(contacts.corners.size(), Vec3::Zero());
   for (const SelfPair& pair : contacts.pairs) {
     const PairPoints x = points_of(pair, contacts.corners);
     const contact::PairEnergy e = contact::pair_energy(pair.kind, x, gap_of(ribbon, problem, pair));
-    // The part that no force is in: the barrier's second derivative along the gradient.
-    const double distance = contact::pair_distance(pair.kind, x) - problem.thickness;
-    const contact::Barrier b = contact::barrier(distance, problem.reach);
-    const double steep = b.first < 0 ? problem.stiffness * b.second / (b.first * b.first) : 0;
-    const contact::Mat12 whole = problem.stiffness * e.hessian, stiff = steep * e.gradient * e.gradient.transpose();
+    const contact::Mat12 stiff = problem.stiffness * e.second * e.along * e.along.transpose();
+    const contact::Mat12 whole = problem.stiffness * e.hessian;
     gather.add(pair, stiff, whole - stiff);
     for (int a = 0; a < 4; ++a) {
       force[static_cast<std::size_t>(pair.corner[static_cast<std::size_t>(a)])] +=
@@ -308,7 +291,6 @@ void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Ch
     system.couplings.push_back({point[static_cast<std::size_t>(block.a)], point[static_cast<std::size_t>(block.b)],
                                 block.hessian, block.geometric});
   }
-  static_cast<void>(chain);
 }
 
 double smallest_distance(const SelfContact& problem, const SelfContacts& contacts) {
@@ -335,7 +317,7 @@ int count_crossings(const Ribbon& ribbon, const SelfContact& problem, const Self
     const SelfPair second{PairKind::vertex_triangle, {e[1], t[0], t[1], t[2]}};
     if (are_neighbours(ribbon, problem, first) || are_neighbours(ribbon, problem, second)) continue;
     const auto at = [&](int corner) -> const Vec3& { return contacts.corners[static_cast<std::size_t>(corner)]; };
-    count += crosses(at(e[0]), at(e[1]), at(t[0]), at(t[1]), at(t[2])) ? 1 : 0;
+    count += contact::pierces(at(e[0]), at(e[1]), at(t[0]), at(t[1]), at(t[2])) ? 1 : 0;
   }
   return count;
 }

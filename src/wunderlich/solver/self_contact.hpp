@@ -65,7 +65,7 @@ bool travel(const geometry::Ribbon& ribbon, const SelfContact& problem, const Se
 double self_energy(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts);
 
 /// Adds its derivatives.
-void add_self_contact(const geometry::Ribbon& ribbon, const SelfContact& problem, const geometry::Chain& chain,
+void add_self_contact(const geometry::Ribbon& ribbon, const SelfContact& problem,
                       const geometry::Kinematics& kinematics, const SelfContacts& contacts, math::ChainSystem& system);
 
 /// Smallest distance of parts that are not neighbours, beyond the thickness [m]; `reach` where none is nearer.
