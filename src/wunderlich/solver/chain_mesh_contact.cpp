@@ -206,7 +206,7 @@ void add_mesh_friction(const Ribbon& ribbon, const MeshProblem& from, const Mesh
     const PairEnergy energy = contact::pair_energy(pair.kind, x, gap_of(ribbon, from, pair, x));
     const contact::PairNearest nearest = contact::pair_nearest(pair.kind, x);
     const std::size_t s = pair.segment;
-    Friction rub{s, 0, 0, Vec3::Zero(), Vec3::Zero(), 0};
+    Friction rub{s, 0, 0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0};
     Vec3 force = Vec3::Zero(), at = Vec3::Zero();
     for (std::size_t point = 0; point < 4; ++point) {
       if (pair.corner[point] < 0) continue;
@@ -221,8 +221,8 @@ void add_mesh_friction(const Ribbon& ribbon, const MeshProblem& from, const Mesh
     }
     const double size = force.norm();
     if (!(size > 0)) continue;
-    rub.from = k.r[s + 1] + rub.along * k.frame[s].col(2) + rub.across * k.frame[s].col(1) + solid1.pose.position +
-               solid1.pose.frame * at - solid0.pose.position - solid0.pose.frame * at;
+    rub.carried = solid1.pose.position + solid1.pose.frame * at - solid0.pose.position - solid0.pose.frame * at;
+    rub.from = k.r[s + 1] + rub.along * k.frame[s].col(2) + rub.across * k.frame[s].col(1) + rub.carried;
     rub.normal = solid1.pose.frame * (force / size);
     rub.force = solid1.friction * weight_of(ribbon, from, pair) * size;
     friction.push_back(rub);
