@@ -97,17 +97,18 @@ struct Lying {
     geometry::forward_kinematics(ribbon, chain, work.kinematics);
     problem.anchor = work.kinematics.r;
     find();
-    work.trial_contacts = work.contacts;
-    if (work.contacts.touches.empty()) std::abort();
+    work.trial_touching.points = work.touching.points;
+    if (work.touching.points.touches.empty()) std::abort();
   }
-  void find() { solver::find_points(ribbon, problem.contact, chain, work.kinematics, work.contacts); }
+  void find() { solver::find_points(ribbon, problem.contact, chain, work.kinematics, work.touching.points); }
 };
 
 void Detection(benchmark::State& state) {
   Lying lying(state);
   for (auto _ : state) {
     lying.find();
-    benchmark::DoNotOptimize(may_go(lying.problem.contact, lying.work.trial_contacts, lying.work.contacts));
+    benchmark::DoNotOptimize(
+        may_go(lying.problem.contact, lying.work.trial_touching.points, lying.work.touching.points));
   }
   state.counters["s_per_segment"] = seconds_each(static_cast<double>(state.range(1)));
 }
@@ -117,7 +118,7 @@ void Solve(benchmark::State& state) {
   Lying lying(state);
   const std::vector<double> multipliers;
   for (auto _ : state) {
-    solver::linearise(lying.ribbon, lying.problem, lying.chain, lying.work.kinematics, multipliers, lying.work.contacts,
+    solver::linearise(lying.ribbon, lying.problem, lying.chain, lying.work.kinematics, multipliers, lying.work.touching,
                       lying.work.system);
     benchmark::DoNotOptimize(math::chain_step(lying.work.system, lying.work.sweep, lying.work.step));
   }

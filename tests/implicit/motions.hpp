@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "solver/paths.hpp"
 #include "wunderlich/solver/implicit/implicit.hpp"
 
 namespace wunderlich::testing {

@@ -374,9 +374,8 @@ bool run_sweep(const ChainSystem& system, ChainWorkspace& work, ChainStep& step,
 }  // namespace
 
 bool chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step) {
-  const std::size_t count = system.links.size();
-  assert(count >= 2);
   if (!system.couplings.empty()) return sparse_chain_step(system, work, step);
+  const std::size_t count = system.links.size();
   const auto probes = system.rows.begin() + static_cast<std::ptrdiff_t>(system.probe_count());
   const auto later = [](const ChainRow& a, const ChainRow& b) { return a.node > b.node; };
   assert(std::is_sorted(system.rows.begin(), probes, later) && std::is_sorted(probes, system.rows.end(), later));

@@ -15,9 +15,9 @@ namespace wunderlich::solver {
 /// when the step began. Its ruling is that of the step's start.   @eq Li2020:14
 struct Friction {
   std::size_t segment;
-  double along, across;  ///< of the point from the segment's far node, along d3 and d2 [m]
-  Vec3 from;             ///< where it would be had it gone with the solid [m]
-  Vec3 carried;          ///< the solid's way there in the step [m]
+  double along, across;         ///< of the point from the segment's far node, along d3 and d2 [m]
+  Vec3 from;                    ///< where it would be had it gone with the solid [m]
+  Vec3 carried = Vec3::Zero();  ///< the solid's way there in the step [m]
   Vec3 normal;
   double force;  ///< coefficient times normal force [N]
 };

@@ -9,8 +9,7 @@
 #include "wunderlich/energy/model.hpp"
 #include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/math/chain_sweep.hpp"
-#include "wunderlich/solver/chain_contact.hpp"
-#include "wunderlich/solver/self_contact.hpp"
+#include "wunderlich/solver/touching.hpp"
 
 namespace wunderlich::solver {
 
@@ -58,12 +57,7 @@ struct ChainProblem {
   std::vector<Hold> holds;                  ///< sorted by decreasing node
   bool closed = false;                      ///< the loop's closure is a constraint
   std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
-};
-
-/// What a chain touches: points beside solids, and parts of itself.
-struct Touching {
-  ContactPoints points;
-  SelfContacts self;
+  Touchable touchable() const { return {contact, self}; }
 };
 
 /// Number of constraint rows: the closure's first, then those of each hold in turn.

@@ -138,13 +138,9 @@ void note_contact(const PathProblem& path, PathState& state, NewtonWorkspace& wo
   const bool over = state.phase == Phase::settle || state.phase == Phase::done;
   problem_at(path, state, over ? path.options.duration : state.t, chain, problem);
   geometry::forward_kinematics(ribbon, state.chain, work.kinematics);
-  find_points(ribbon, problem.contact, state.chain, work.kinematics, work.touching.points);
-  state.touching = contact_count(problem.contact, work.touching.points);
-  state.nearest = std::min(state.nearest, smallest_distance(problem.contact, work.touching.points));
-  if (!problem.self.active()) return;
-  find_pairs(ribbon, problem.self, state.chain, work.kinematics, work.search, work.touching.self);
-  state.touching += static_cast<int>(work.touching.self.pairs.size());
-  state.nearest = std::min(state.nearest, smallest_distance(problem.self, work.touching.self));
+  find_touching(ribbon, problem.touchable(), state.chain, work.kinematics, work.search, work.touching);
+  state.touching = contact_count(problem.touchable(), work.touching);
+  state.nearest = std::min(state.nearest, smallest_distance(problem.touchable(), work.touching));
 }
 
 }  // namespace
@@ -281,10 +277,7 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
   EndReactions reactions;
   if (state.multipliers.size() != row_count(problem)) return reactions;
   geometry::forward_kinematics(ribbon, chain, work.kinematics);
-  find_points(ribbon, problem.contact, chain, work.kinematics, work.touching.points);
-  if (problem.self.active()) {
-    find_pairs(ribbon, problem.self, chain, work.kinematics, work.search, work.touching.self);
-  }
+  find_touching(ribbon, problem.touchable(), chain, work.kinematics, work.search, work.touching);
   linearise(ribbon, problem, chain, work.kinematics, state.multipliers, work.touching, work.system);
   if (!math::chain_step(work.system, work.sweep, work.step)) return reactions;
   // A held base answers with the gradient of everything beyond it; a held pose with minus its multipliers.

@@ -20,8 +20,7 @@ constexpr double kKick = 0.05;  // largest fold-angle change that leaves a saddl
 constexpr int kMaxHalvings = 20, kMaxKicks = 20, kMaxUnshifted = 3;
 constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: stationary, but is it a minimum?
 constexpr int kInversePasses = 12;
-constexpr double kNeutral = 1e-7;  // eigenvalues below this (units of the shift) count as zero
-constexpr double kRounding = 1e-15;
+constexpr double kNeutral = 1e-7, kRounding = 1e-15;  // eigenvalues below the first (units of the shift) count as zero
 constexpr double kHeld = 1e-13;     // of the rows (m, rad, 1) at the end of a step in time; lengths beyond 1 m count
 constexpr int kUnsettled = 3;       // first iterations, in which what sticks and what slips sorts itself ...
 constexpr double kSettling = 3e-4;  // ... unless steps are shorter than this
@@ -174,15 +173,9 @@ void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chai
   work.placed = false;
   if (!placed) geometry::forward_kinematics(ribbon, current, work.kinematics);
   work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
-  const bool feels = problem.self.active(), meets = !problem.contact.empty();
-  if (!placed) {
-    work.touching.points.clear();
-    if (feels) find_pairs(ribbon, problem.self, current, work.kinematics, work.search, work.touching.self);
-    if (meets) find_points(ribbon, problem.contact, current, work.kinematics, work.touching.points);
-  }
-  if (feels) work.value.contact = self_energy(ribbon, problem.self, work.touching.self);
-  if (!meets) return;
-  work.value.contact += contact_energy(ribbon, problem.contact, work.touching.points);
+  if (problem.touchable().empty()) return;
+  if (!placed) find_touching(ribbon, problem.touchable(), current, work.kinematics, work.search, work.touching);
+  work.value.contact = touching_energy(ribbon, problem.touchable(), work.touching);
   work.value.friction = friction_value(problem.contact, work.kinematics);
 }
 
@@ -191,19 +184,13 @@ void value_trial(const Iterate& at) {
   NewtonWorkspace& work = at.work;
   geometry::forward_kinematics(at.ribbon, work.trial, work.trial_kinematics);
   work.trial_value = objective(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.kinematics);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Touching &from = work.touching, &to = work.trial_touching;
-  const SelfContact& self = at.problem.self;
-  if (self.active()) {
-    const bool free = travel(at.ribbon, self, from.self, work.trial, work.trial_kinematics, work.search, to.self);
-    work.trial_value.contact = free ? self_energy(at.ribbon, self, to.self) : kInfinity;
-  }
-  const ContactProblem& contact = at.problem.contact;
-  if (contact.empty()) return;
-  find_points(at.ribbon, contact, work.trial, work.trial_kinematics, to.points);
-  work.trial_value.contact +=
-      may_go(contact, from.points, to.points) ? contact_energy(at.ribbon, contact, to.points) : kInfinity;
-  work.trial_value.friction = friction_value(contact, work.trial_kinematics);
+  const Touchable touchable = at.problem.touchable();
+  if (touchable.empty()) return;
+  const bool free = go_touching(at.ribbon, touchable, work.touching, work.trial, work.trial_kinematics, work.search,
+                                work.trial_touching);
+  work.trial_value.contact =
+      free ? touching_energy(at.ribbon, touchable, work.trial_touching) : std::numeric_limits<double>::infinity();
+  work.trial_value.friction = friction_value(touchable.contact, work.trial_kinematics);
 }
 
 /// The trial becomes the iterate; loads are counted from here.
@@ -359,9 +346,9 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     work.touching.points.settled = !options.inertial || problem.contact.friction.empty() || is_settled(report);
     linearise(ribbon, problem, current, work.kinematics, lambda, work.touching, work.system);
     if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
-    const bool inertial = options.inertial && find_inertial_direction(ribbon, work, report);
-    if (inertial) shift = 0;
-    if (!inertial && !find_direction(ribbon, conservative, work, report, shift)) {
+    if (options.inertial && find_inertial_direction(ribbon, work, report)) {
+      shift = 0;
+    } else if (!find_direction(ribbon, conservative, work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;
     }
@@ -371,7 +358,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     report.max_residual = max_abs(work.residuals);
     // A shift makes steps short that are not the last ones.
     const bool small = limit == 1 && report.last_step * (1 + shift) < options.tolerance &&
-                       report.max_residual < options.tolerance && work.contacts.settled;
+                       report.max_residual < options.tolerance && work.touching.points.settled;
     if (!conservative || (options.inertial && small)) {
       // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
       if (small && !options.inertial) return accept();
@@ -390,9 +377,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
     const double slope = at.slope();
     const Stationary kind =
         options.inertial ? Stationary::no : classify(ribbon, options, shift, slope, merit, work, report);
-    if (kind == Stationary::minimum) {
-      return accept();
-    }
+    if (kind == Stationary::minimum) return accept();
     if (kind == Stationary::unshift) {
       shift = 0;
       continue;

@@ -260,7 +260,8 @@ double self_energy(const Ribbon& ribbon, const SelfContact& problem, const SelfC
   return problem.stiffness * sum;
 }
 
-void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Kinematics& k, const SelfContacts& contacts, math::ChainSystem& system) {
+void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Kinematics& k,
+                      const SelfContacts& contacts, math::ChainSystem& system) {
   if (contacts.pairs.empty()) return;
   Gather gather;
   std::vector<Vec3> force(contacts.corners.size(), Vec3::Zero());

@@ -57,10 +57,10 @@ void find_held(const Ribbon& ribbon, const Options& options, const ChainProblem&
 
 }  // namespace
 
-double work_done(const Scheme& scheme, const State& state, const Workspace& work) {
+double work_done(const Ribbon& ribbon, const Scheme& scheme, const State& state, const Workspace& work) {
   return load_work(work.problem, state.points.x, work.x) + friction_work(work.problem.contact, work.newton.kinematics) +
          support_work(work.problem, scheme, state, work.start, work, work.residuals) +
-         solid_work(path.ribbon, work.solids, work.before, work.problem.contact, work.newton.touching.points,
+         solid_work(ribbon, work.solids, work.before.points, work.problem.contact, work.newton.touching.points,
                     late_share(scheme));
 }
 

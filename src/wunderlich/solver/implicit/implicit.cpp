@@ -83,22 +83,17 @@ void keep_held(const ChainProblem& problem, const Pose& held, Pose& base) {
 bool start_clear(const PathProblem& path, const State& state, double h, Workspace& work) {
   const Ribbon& ribbon = path.ribbon;
   ContactProblem& contact = work.problem.contact;
-  const SelfContact& self = work.problem.self;
-  if (contact.empty() && !self.active()) return true;
+  if (work.problem.touchable().empty()) return true;
   place_solids(ribbon, path.surroundings, state.path.t, work.solids);
   geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
-  find_points(ribbon, work.solids, state.path.chain, work.kinematics, work.before);
-  set_friction(ribbon, work.solids, work.before, state.path.chain, work.kinematics, h, contact);
-  SelfSearch& search = work.newton.search;
-  if (self.active()) find_pairs(ribbon, self, state.path.chain, work.kinematics, search, work.self_before);
+  const Touchable touchable{work.solids, work.problem.self};
+  find_touching(ribbon, touchable, state.path.chain, work.kinematics, work.newton.search, work.before);
+  set_friction(ribbon, work.solids, work.before.points, state.path.chain, work.kinematics, h, contact);
   const auto is_clear = [&](const Chain& chain) {
     geometry::forward_kinematics(ribbon, chain, work.newton.kinematics);
-    Touching& here = work.newton.touching;
-    find_points(ribbon, contact, chain, work.newton.kinematics, here.points);
-    work.newton.placed = may_go(contact, work.before, here.points) &&
-                         (!self.active() || travel(ribbon, self, work.self_before, chain, work.newton.kinematics,
-                                                   work.newton.search, here.self));
-    return work.newton.placed;
+    NewtonWorkspace& newton = work.newton;
+    return newton.placed = go_touching(ribbon, work.problem.touchable(), work.before, chain, newton.kinematics,
+                                       newton.search, newton.touching);
   };
   if (is_clear(work.trial)) return true;
   const Pose held = work.trial.base;
@@ -253,12 +248,9 @@ void find_accelerations(const PathProblem& path, const Options& options, State& 
   const ObjectiveValue now = objective(path.ribbon, work.problem, state.path.chain, work.kinematics, work.kinematics);
   state.elastic = now.elastic + now.barrier;
   place_solids(path.ribbon, path.surroundings, state.path.t, work.solids);
-  find_points(path.ribbon, work.solids, state.path.chain, work.kinematics, work.before);
-  state.elastic += contact_energy(path.ribbon, work.solids, work.before);
-  if (const SelfContact& self = work.problem.self; self.active()) {
-    find_pairs(path.ribbon, self, state.path.chain, work.kinematics, work.newton.search, work.self_before);
-    state.elastic += self_energy(path.ribbon, self, work.self_before);
-  }
+  const Touchable touchable{work.solids, work.problem.self};
+  find_touching(path.ribbon, touchable, state.path.chain, work.kinematics, work.newton.search, work.before);
+  state.elastic += touching_energy(path.ribbon, touchable, work.before);
   state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
   state.base_reaction.setZero();
   work.multipliers.assign(row_count(work.problem), 0.0);
@@ -339,7 +331,7 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
     report.error = finish(scheme, work.x, work.points) / ribbon.length;
     const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
-    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(scheme, state, work);
+    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(ribbon, scheme, state, work);
     const double peak = std::max(state.peak, kinetic1);
     const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
     if (grows && can_damp(options, state, halvings)) continue;
@@ -372,12 +364,8 @@ StepReport step(const PathProblem& path, const Options& options, double t1, int 
   state.path.iterations += report.iterations;
   if (carries_frames(path)) note_frames(path, state.path);
   drag(ribbon, options, h, work.newton.kinematics, state.points);
-  report.nearest = std::min(report.nearest, smallest_distance(work.problem.contact, work.newton.touching.points));
-  report.touching = contact_count(work.newton.touching.points);
-  if (const SelfContact& self = work.problem.self; self.active()) {
-    report.nearest = std::min(report.nearest, smallest_distance(self, work.newton.touching.self));
-    report.touching += static_cast<int>(work.newton.touching.self.pairs.size());
-  }
+  report.nearest = std::min(report.nearest, smallest_distance(work.problem.touchable(), work.newton.touching));
+  report.touching = contact_count(work.problem.touchable(), work.newton.touching);
   report.inelastic = state.level == kInelastic;
   if (report.inelastic) {  // the accelerations of an impulse are nothing to go on with
     state.level = level;

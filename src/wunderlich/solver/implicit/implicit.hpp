@@ -16,9 +16,8 @@ struct Workspace {
   geometry::Chain trial, start;
   std::vector<double> multipliers, residuals;
   std::vector<Vec3> x;
-  ContactProblem solids;     ///< where they are at the start of a step
-  ContactPoints before;      ///< the strip's points there
-  SelfContacts self_before;  ///< the same of the strip's own parts
+  ContactProblem solids;  ///< where they are at the start of a step
+  Touching before;        ///< what the strip touches there
   Points points;
   ConserveWorkspace conserve;
   geometry::Kinematics kinematics;
