@@ -1,0 +1,226 @@
+#include "wunderlich/solver/two_stage/contact_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "wunderlich/solver/two_stage/workspace.hpp"
+
+namespace wunderlich::solver::two_stage {
+
+using contact::Distance;
+using geometry::Ribbon;
+
+namespace {
+
+constexpr double kFast = 0.25;      // way in a step over the size of a solid, beyond which points are followed
+constexpr int kMostTraces = 200;    // of a point on its way
+constexpr double kSameDepth = 0.7;  // of the deepest point of a ruling that outer ones must have to count
+constexpr double kStraight = 1.05;  // deeper than the chord of the outermost by less: says nothing new
+
+/// Radius of the largest ball inside.
+double inner_radius(const contact::Shape& shape) {
+  if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return sphere->radius;
+  if (const auto* cylinder = std::get_if<contact::Cylinder>(&shape)) {
+    return std::min(cylinder->radius, cylinder->half_length);
+  }
+  if (const auto* capsule = std::get_if<contact::Capsule>(&shape)) return capsule->radius;
+  if (const auto* box = std::get_if<contact::Box>(&shape)) return box->half_size.minCoeff();
+  return std::numeric_limits<double>::infinity();
+}
+
+Vec3 into(const Pose& pose, const Vec3& point) { return pose.frame.conjugate() * Vec3(point - pose.position); }
+Vec3 out_of(const Pose& pose, const Vec3& point) { return pose.position + pose.frame * point; }
+
+/// Sizes of the grid of points.
+struct Grid {
+  std::size_t along, across;  ///< cells
+  std::size_t segments;
+  std::size_t key(std::size_t solid, std::size_t segment, std::size_t i, std::size_t k) const {
+    return ((solid * segments + segment) * (along + 1) + i) * (across + 1) + k;
+  }
+};
+
+Grid grid_of(const Ribbon& ribbon, const ContactProblem& solids) {
+  return {static_cast<std::size_t>(solids.along), static_cast<std::size_t>(solids.across),
+          static_cast<std::size_t>(ribbon.segments)};
+}
+
+/// A facet against one solid, both in the solid's own frame.
+struct Facet {
+  std::size_t solid, segment;
+  Vec3 r0, r1, d2, d3;
+  double eta0, eta1;
+  bool fast;
+  Vec3 at(double share, double v) const {
+    return (1 - share) * r0 + share * r1 + v * (d2 + ((1 - share) * eta0 + share * eta1) * d3);
+  }
+};
+
+Facet facet_of(const geometry::State& shape, const Pose& pose, std::size_t solid, std::size_t s) {
+  const Quat own = pose.frame.conjugate() * shape.q[s];
+  return {solid,
+          s,
+          into(pose, shape.r[s]),
+          into(pose, shape.r[s + 1]),
+          own * Vec3::UnitY(),
+          own * Vec3::UnitZ(),
+          shape.eta[s],
+          shape.eta[s + 1],
+          false};
+}
+
+/// Radius about the middle that holds the facet.
+double reach(const Facet& facet, double width) {
+  const double eta = std::max(std::abs(facet.eta0), std::abs(facet.eta1));
+  return 0.5 * ((facet.r1 - facet.r0).norm() + width * std::sqrt(1 + eta * eta));
+}
+
+/// Longest way of a corner in the step, in the solid's own frame.
+double way_of(const Facet& before, const Facet& after, double width) {
+  double longest = 0;
+  for (const double share : {0.0, 1.0}) {
+    for (const double v : {-0.5 * width, 0.5 * width}) {
+      longest = std::max(longest, (after.at(share, v) - before.at(share, v)).norm());
+    }
+  }
+  return longest;
+}
+
+/// Distance of a point that came from `before`, less what is kept. If it meets the solid on its way, that to the plane
+/// tangent where it meets: distance to a convex solid lies above its tangents, so that what is beyond that plane is out.
+Distance swept_distance(const contact::Shape& shape, const Vec3& before, const Vec3& after, double kept) {
+  const Vec3 way = after - before;
+  const double length = way.norm(), close = 1e-3 * inner_radius(shape);
+  double gone = 0;
+  for (int trace = 0; trace < kMostTraces && gone < length; ++trace) {
+    const Vec3 at = before + (gone / length) * way;
+    Distance here = contact::distance(shape, at);
+    here.value -= kept;
+    if (here.value < close) {
+      if (here.normal.dot(way) >= 0) break;  // on its way out
+      here.value += here.normal.dot(after - at);
+      return here;
+    }
+    gone += here.value;
+  }
+  Distance end = contact::distance(shape, after);
+  end.value -= kept;
+  return end;
+}
+
+double kept_by(const ContactProblem& solids) { return solids.thickness + solids.margin; }
+
+/// Adds a point to the touches, unless it is there.
+void add_touch(const Grid& grid, const Facet& facet, std::size_t i, std::size_t k, double width, Workspace& work) {
+  const std::size_t key = grid.key(facet.solid, facet.segment, i, k);
+  for (const Touch& touch : work.touches) {
+    if (touch.key == key) return;
+  }
+  Touch touch;
+  touch.place = {facet.segment, static_cast<double>(i) / static_cast<double>(grid.along),
+                 width * (static_cast<double>(k) / static_cast<double>(grid.across) - 0.5)};
+  touch.solid = facet.solid;
+  touch.key = key;
+  touch.fast = facet.fast;
+  touch.eta_start = eta_at(work.before, touch.place);
+  const Vec3 start = material_place(work.before, touch.place, touch.eta_start);
+  touch.from = out_of(work.solids.solids[facet.solid].pose, into(work.solids_before.solids[facet.solid].pose, start));
+  work.touches.push_back(touch);
+}
+
+/// Those of a ruling's points that are inside, by their gaps.
+void add_ruling(const Grid& grid, const Facet& facet, std::size_t i, double width, double tolerance, Workspace& work) {
+  const std::vector<double>& gaps = work.ruling_gaps;
+  std::size_t first = gaps.size(), last = 0, deepest = 0;
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    if (gaps[k] >= -tolerance) continue;
+    first = std::min(first, k);
+    last = k;
+    if (gaps[k] < gaps[deepest]) deepest = k;
+  }
+  if (first == gaps.size()) return;
+  if (deepest < first) deepest = first;
+  const double share = last > first ? static_cast<double>(deepest - first) / static_cast<double>(last - first) : 0;
+  const double chord = (1 - share) * gaps[first] + share * gaps[last];
+  const bool straight = deepest != first && deepest != last && gaps[deepest] > kStraight * chord;
+  if (!straight) add_touch(grid, facet, i, deepest, width, work);
+  for (const std::size_t k : {first, last}) {
+    if (k != deepest && (straight || gaps[k] < kSameDepth * gaps[deepest])) add_touch(grid, facet, i, k, width, work);
+  }
+}
+
+void look_at(const Grid& grid, const Facet& facet, const Facet& before, double width, double tolerance, Nearest& nearest,
+             Workspace& work) {
+  const ContactProblem& solids = work.solids;
+  const contact::Shape& shape = solids.solids[facet.solid].shape;
+  const double kept = kept_by(solids);
+  // The ruling at a facet's start is that at the end of the one before.
+  for (std::size_t i = facet.segment == 0 ? 0 : 1; i <= grid.along; ++i) {
+    bool inside = false;
+    for (std::size_t k = 0; k <= grid.across; ++k) {
+      const double share = static_cast<double>(i) / static_cast<double>(grid.along);
+      const double v = width * (static_cast<double>(k) / static_cast<double>(grid.across) - 0.5);
+      const Vec3 at = facet.at(share, v);
+      const double gap = facet.fast ? swept_distance(shape, before.at(share, v), at, kept).value
+                                    : contact::distance(shape, at).value - kept;
+      work.ruling_gaps[k] = gap;
+      nearest.gap = std::min(nearest.gap, gap);
+      nearest.near += gap < solids.distance;
+      inside = inside || gap < -tolerance;
+    }
+    if (inside) add_ruling(grid, facet, i, width, tolerance, work);
+  }
+}
+
+}  // namespace
+
+void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t0, double t1,
+                Workspace& work) {
+  place_solids(ribbon, surroundings, t0, work.solids_before);
+  place_solids(ribbon, surroundings, t1, work.solids);
+  work.touches.clear();
+}
+
+Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double tolerance, Workspace& work) {
+  const ContactProblem& solids = work.solids;
+  const Grid grid = grid_of(ribbon, solids);
+  work.ruling_gaps.assign(grid.across + 1, 0.0);
+  Nearest nearest{std::numeric_limits<double>::infinity(), 0, 0};
+  for (std::size_t i = 0; i < solids.solids.size(); ++i) {
+    const contact::Shape& solid = solids.solids[i].shape;
+    const double size = inner_radius(solid);
+    for (std::size_t s = 0; s < grid.segments; ++s) {
+      Facet facet = facet_of(shape, solids.solids[i].pose, i, s);
+      const Facet before = facet_of(work.before, work.solids_before.solids[i].pose, i, s);
+      const double way = way_of(before, facet, ribbon.width);
+      facet.fast = way > kFast * size;
+      const double clear = contact::distance(solid, facet.at(0.5, 0)).value - reach(facet, ribbon.width);
+      if (clear - kept_by(solids) > solids.distance + (facet.fast ? way : 0)) {
+        nearest.gap = std::min(nearest.gap, clear - kept_by(solids));  // a bound from below
+        continue;
+      }
+      look_at(grid, facet, before, ribbon.width, tolerance, nearest, work);
+    }
+  }
+  nearest.distance = nearest.gap + solids.margin;
+  return nearest;
+}
+
+void refresh_touch(const geometry::State& shape, const Workspace& work, Touch& touch) {
+  const ContactProblem::Solid& solid = work.solids.solids[touch.solid];
+  const double kept = kept_by(work.solids);
+  const Vec3 at = into(solid.pose, place_of(shape, touch.place));
+  Distance d;
+  if (touch.fast) {
+    const Vec3 before = into(work.solids_before.solids[touch.solid].pose, place_of(work.before, touch.place));
+    d = swept_distance(solid.shape, before, at, kept);
+  } else {
+    d = contact::distance(solid.shape, at);
+    d.value -= kept;
+  }
+  touch.normal = solid.pose.frame * d.normal;
+  touch.gap = d.value;
+}
+
+}  // namespace wunderlich::solver::two_stage
