@@ -1,4 +1,4 @@
-/// A small complementarity problem with Coulomb cones, by projected Gauss-Seidel.
+/// A small complementarity problem with Coulomb cones, by projected Gauss-Seidel with Newton's steps between.
 #pragma once
 
 #include <vector>
@@ -13,6 +13,9 @@ struct ConeProblem {
   std::vector<double> slack;     ///< (size) b on entry, w on return
   std::vector<double> force;     ///< (size) x0 on entry, x on return
   std::vector<double> friction;  ///< (size) mu of a row that has tangential ones; -1 of those
+  // buffers
+  std::vector<int> rows;
+  std::vector<double> system, rhs, force_kept, slack_kept;
 };
 
 struct ConeReport {
@@ -20,7 +23,8 @@ struct ConeReport {
   bool capped = false;
 };
 
-/// Until a sweep changes no w by more than `tolerance`.
+/// Until a sweep changes no w by more than `tolerance`. Sweeps find out what touches, holds and slides; the equations of
+/// that are then solved at once, since sweeps alone are slow where rows say nearly the same.
 ConeReport solve_cones(double tolerance, int max_sweeps, ConeProblem& problem);
 
 /// The force of a friction disc nearest to (a, b).

@@ -13,9 +13,10 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kGapTolerance = 1e-5;     // of a point, over the width
-constexpr double kConeTolerance = 1e-6;    // of forces, over the largest gap that they must close
-constexpr double kLengthTolerance = 1e-9;  // |e|/l - 1
+constexpr double kGapTolerance = 1e-4;     // of a point, over the width
+constexpr double kConeTolerance = 1e-4;    // of forces, over the largest gap that they must close
+constexpr int kMostSweeps = 100;          // of a small dense problem: what is left the next round takes up
+constexpr double kLengthTolerance = 1e-7;  // |e|/l - 1
 constexpr double kLongestTurn = 0.4;       // of an edge or a frame in one round [rad]
 constexpr double kToBoundary = 0.9;        // share of the way to |x| = 1 in one round
 
@@ -51,7 +52,7 @@ void set_velocity(const Ribbon& ribbon, const Options& options, double dt, State
 /// Largest gap to be closed.
 double deepest(const Workspace& work) {
   double worst = 0;
-  for (const Touch& touch : work.touches) worst = std::max(worst, -touch.gap);
+  for (const Touch& touch : work.touches) worst = std::max(worst, touch.allowed - touch.gap);
   return worst;
 }
 
@@ -70,7 +71,7 @@ bool project_once(const Options& options, bool touches, double tolerance, Worksp
     if (!touches) work.cones.force.clear();
     return true;
   }
-  return touches ? solve_contact_direct(tolerance, options.opt.max_sweeps, work, report) : solve_equations(work);
+  return touches ? solve_contact_direct(tolerance, kMostSweeps, work, report) : solve_equations(work);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFast = 0.25;      // way in a step over the size of a solid, beyond which points are followed
 constexpr int kMostTraces = 200;    // of a point on its way
+constexpr double kLeft = 0.8;       // of a depth that a step leaves: it comes out without being thrown
 constexpr double kSameDepth = 0.7;  // of the deepest point of a ruling that outer ones must have to count
 constexpr double kStraight = 1.05;  // deeper than the chord of the outermost by less: says nothing new
 
@@ -111,6 +112,12 @@ Distance swept_distance(const contact::Shape& shape, const Vec3& before, const V
 
 double kept_by(const ContactProblem& solids) { return solids.thickness + solids.margin; }
 
+double start_gap(const Touch& touch, const Workspace& work) {
+  const ContactProblem::Solid& solid = work.solids_before.solids[touch.solid];
+  return contact::distance(solid.shape, into(solid.pose, place_of(work.before, touch.place))).value -
+         kept_by(work.solids_before);
+}
+
 /// Adds a point to the touches, unless it is there.
 void add_touch(const Grid& grid, const Facet& facet, std::size_t i, std::size_t k, double width, Workspace& work) {
   const std::size_t key = grid.key(facet.solid, facet.segment, i, k);
@@ -126,6 +133,8 @@ void add_touch(const Grid& grid, const Facet& facet, std::size_t i, std::size_t 
   touch.eta_start = eta_at(work.before, touch.place);
   const Vec3 start = material_place(work.before, touch.place, touch.eta_start);
   touch.from = out_of(work.solids.solids[facet.solid].pose, into(work.solids_before.solids[facet.solid].pose, start));
+  // The gap of a moment ago, with the solid's own motion: where the strip stood is no reason to throw it.
+  touch.allowed = std::min(0.0, kLeft * start_gap(touch, work));
   work.touches.push_back(touch);
 }
 

@@ -16,6 +16,7 @@ struct Touch {
   Vec3 from = Vec3::Zero();    ///< where it would be had it gone with the solid [m]
   Vec3 normal = Vec3::Zero();  ///< of the solid, outward
   double gap = 0;              ///< beyond thickness and margin; of a plane that keeps the solid behind it [m]
+  double allowed = 0;          ///< gap that may be left: what was inside at the step's start comes out slowly [m]
   double push = 0;             ///< lambda_n so far [N]
   Vec3 drag = Vec3::Zero();    ///< lambda_t so far, in the plane tangent to the solid [N]
 };

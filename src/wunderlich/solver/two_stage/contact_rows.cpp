@@ -114,8 +114,9 @@ void set_metric(const Ribbon& ribbon, const Options& options, double dt, Workspa
     Vec7& inverse = equations.inverse_metric[b];
     inverse.head<3>() = dt * dt * work.holding.inverse_mass[b];
     if (!work.holding.eta_held[b]) {
-      const double length = ribbon.rest_length[std::min(b, ribbon.rest_length.size() - 1)];
-      inverse[kEtaPlace] = printed ? 1 : 1 / (stiffness * length);
+      const std::size_t s = std::min(b, ribbon.rest_length.size() - 1);
+      const double inertia = energy::turn_inertia(ribbon, s) / (dt * dt);
+      inverse[kEtaPlace] = printed ? 1 : 1 / (inertia + stiffness * ribbon.rest_length[s]);
     }
     if (b >= ribbon.rest_length.size() || work.holding.frame_held[b]) continue;
     // |dq|^2 is a quarter of |theta|^2. Else: the stiffness that E_para holds tangents with, and the inertia of the turn.

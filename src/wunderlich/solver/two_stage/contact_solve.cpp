@@ -163,7 +163,7 @@ void assemble_touches(const Ribbon& ribbon, const geometry::State& shape, double
     const double friction = work.solids.solids[touch.solid].friction;
     Row& normal = add_cone(friction, touch.push, work);
     point_row(ribbon, shape, touch.place, eta_at(shape, touch.place), touch.normal, true, work, normal);
-    normal.residual = touch.gap;
+    normal.residual = touch.gap - touch.allowed;
     if (friction == 0) continue;
     const Vec3 way = material_place(shape, touch.place, touch.eta_start) - touch.from;
     Vec3 a, b;
