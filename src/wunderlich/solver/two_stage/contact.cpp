@@ -14,7 +14,7 @@ using geometry::Ribbon;
 namespace {
 
 constexpr double kGapTolerance = 1e-4;     // of a point, over the width
-constexpr double kConeTolerance = 1e-4;    // of forces, over the largest gap that they must close
+constexpr double kConeTolerance = 1e-6;    // of what forces close, over the largest gap at first
 constexpr int kMostSweeps = 100;          // of a small dense problem: what is left the next round takes up
 constexpr double kLengthTolerance = 1e-7;  // |e|/l - 1
 constexpr double kLongestTurn = 0.4;       // of an edge or a frame in one round [rad]
@@ -85,13 +85,14 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
   const bool swept = options.opt.projection == Projection::gauss_seidel;
   const double angle_tolerance = 0.1 * options.opt.constraint_tolerance;
   const double length_tolerance = swept ? angle_tolerance : kLengthTolerance;
-  Nearest nearest = find_touches(ribbon, state.shape, tolerance, work);
+  Nearest nearest = find_touches(ribbon, state.shape, 0, work);  // all that is inside, though it be little
   if (work.touches.empty()) {
     record(nearest, work, report);
     return true;
   }
   set_metric(ribbon, options, dt, work);
   bool settled = false, first = true;
+  double close = 0;
   for (int round = 0; round < options.contact.max_rounds; ++round) {
     if (!assemble_equations(ribbon, options, state.shape, work)) break;
     assemble_touches(ribbon, state.shape, dt, work);
@@ -101,7 +102,7 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
         work.equations.worst_length <= length_tolerance && work.equations.worst_angle <= angle_tolerance;
     settled = out && equations_hold;
     if (settled) break;
-    const double close = swept ? 0.1 * angle_tolerance * ribbon.width : kConeTolerance * std::max(depth, tolerance);
+    if (round == 0) close = swept ? 0.1 * angle_tolerance * ribbon.width : kConeTolerance * depth;
     if (!project_once(options, !out, close, work, report)) break;
     ++report.contact_rounds;
     const double share = longest_motion(ribbon, state.shape, work);

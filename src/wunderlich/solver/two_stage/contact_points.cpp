@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "wunderlich/solver/two_stage/workspace.hpp"
 
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double kFast = 0.25;      // way in a step over the size of a solid, beyond which points are followed
 constexpr int kMostTraces = 200;    // of a point on its way
+constexpr double kSamePlace = 1e-3; // share of a facet within which points are one
+constexpr int kGoldenSteps = 16;    // in looking for the deepest point
 constexpr double kLeft = 0.8;       // of a depth that a step leaves: it comes out without being thrown
 constexpr double kSameDepth = 0.7;  // of the deepest point of a ruling that outer ones must have to count
 constexpr double kStraight = 1.05;  // deeper than the chord of the outermost by less: says nothing new
@@ -33,19 +36,13 @@ double inner_radius(const contact::Shape& shape) {
 Vec3 into(const Pose& pose, const Vec3& point) { return pose.frame.conjugate() * Vec3(point - pose.position); }
 Vec3 out_of(const Pose& pose, const Vec3& point) { return pose.position + pose.frame * point; }
 
-/// Sizes of the grid of points.
+/// The grid of points on a facet.
 struct Grid {
   std::size_t along, across;  ///< cells
-  std::size_t segments;
-  std::size_t key(std::size_t solid, std::size_t segment, std::size_t i, std::size_t k) const {
-    return ((solid * segments + segment) * (along + 1) + i) * (across + 1) + k;
-  }
+  double width;               ///< of the strip [m]
+  double share(std::size_t i) const { return static_cast<double>(i) / static_cast<double>(along); }
+  double v(std::size_t k) const { return width * (static_cast<double>(k) / static_cast<double>(across) - 0.5); }
 };
-
-Grid grid_of(const Ribbon& ribbon, const ContactProblem& solids) {
-  return {static_cast<std::size_t>(solids.along), static_cast<std::size_t>(solids.across),
-          static_cast<std::size_t>(ribbon.segments)};
-}
 
 /// A facet against one solid, both in the solid's own frame.
 struct Facet {
@@ -118,17 +115,18 @@ double start_gap(const Touch& touch, const Workspace& work) {
          kept_by(work.solids_before);
 }
 
-/// Adds a point to the touches, unless it is there.
-void add_touch(const Grid& grid, const Facet& facet, std::size_t i, std::size_t k, double width, Workspace& work) {
-  const std::size_t key = grid.key(facet.solid, facet.segment, i, k);
+/// Adds a point to the touches, unless one is there.
+void add_touch(const Facet& facet, double share, double v, double width, Workspace& work) {
   for (const Touch& touch : work.touches) {
-    if (touch.key == key) return;
+    const Place& place = touch.place;
+    if (touch.solid == facet.solid && place.segment == facet.segment && std::abs(place.share - share) < kSamePlace &&
+        std::abs(place.v - v) < kSamePlace * width) {
+      return;
+    }
   }
   Touch touch;
-  touch.place = {facet.segment, static_cast<double>(i) / static_cast<double>(grid.along),
-                 width * (static_cast<double>(k) / static_cast<double>(grid.across) - 0.5)};
+  touch.place = {facet.segment, share, v};
   touch.solid = facet.solid;
-  touch.key = key;
   touch.fast = facet.fast;
   touch.eta_start = eta_at(work.before, touch.place);
   const Vec3 start = material_place(work.before, touch.place, touch.eta_start);
@@ -139,7 +137,7 @@ void add_touch(const Grid& grid, const Facet& facet, std::size_t i, std::size_t 
 }
 
 /// Those of a ruling's points that are inside, by their gaps.
-void add_ruling(const Grid& grid, const Facet& facet, std::size_t i, double width, double tolerance, Workspace& work) {
+void add_ruling(const Grid& grid, const Facet& facet, std::size_t i, double tolerance, Workspace& work) {
   const std::vector<double>& gaps = work.ruling_gaps;
   std::size_t first = gaps.size(), last = 0, deepest = 0;
   for (std::size_t k = 0; k < gaps.size(); ++k) {
@@ -153,33 +151,73 @@ void add_ruling(const Grid& grid, const Facet& facet, std::size_t i, double widt
   const double share = last > first ? static_cast<double>(deepest - first) / static_cast<double>(last - first) : 0;
   const double chord = (1 - share) * gaps[first] + share * gaps[last];
   const bool straight = deepest != first && deepest != last && gaps[deepest] > kStraight * chord;
-  if (!straight) add_touch(grid, facet, i, deepest, width, work);
+  const auto add = [&](std::size_t k) { add_touch(facet, grid.share(i), grid.v(k), grid.width, work); };
+  if (!straight) add(deepest);
   for (const std::size_t k : {first, last}) {
-    if (k != deepest && (straight || gaps[k] < kSameDepth * gaps[deepest])) add_touch(grid, facet, i, k, width, work);
+    if (k != deepest && (straight || gaps[k] < kSameDepth * gaps[deepest])) add(k);
   }
 }
 
-void look_at(const Grid& grid, const Facet& facet, const Facet& before, double width, double tolerance, Nearest& nearest,
+/// Does the solid have edges near, which points of a grid miss?
+bool has_edges(const contact::Shape& shape, const Facet& facet, double width) {
+  if (std::holds_alternative<contact::Box>(shape)) return true;
+  const auto* cylinder = std::get_if<contact::Cylinder>(&shape);
+  return cylinder != nullptr && std::abs(facet.at(0.5, 0).z()) + reach(facet, width) > cylinder->half_length;
+}
+
+/// The least value of a function without other minima on [0, 1], and where.
+template <class Function>
+std::pair<double, double> least_between(const Function& value) {
+  constexpr double kGolden = 0.6180339887498949;
+  double low = 0, high = 1, a = 1 - kGolden, b = kGolden, at_a = value(a), at_b = value(b);
+  for (int i = 0; i < kGoldenSteps; ++i) {
+    if (at_a < at_b) {
+      high = b, b = a, at_b = at_a, a = high - kGolden * (high - low), at_a = value(a);
+    } else {
+      low = a, a = b, at_a = at_b, b = low + kGolden * (high - low), at_b = value(b);
+    }
+  }
+  return at_a < at_b ? std::pair(at_a, a) : std::pair(at_b, b);
+}
+
+/// The deepest point of a facet that an edge may cut between the grid's points. Distance to a convex solid is convex on
+/// a flat facet, and rulings cover it in order: along each, and from one to the next, there is one minimum.
+void find_deepest(const Facet& facet, double width, double tolerance, Nearest& nearest, Workspace& work) {
+  const contact::Shape& shape = work.solids.solids[facet.solid].shape;
+  const auto across = [&](double share) {
+    return least_between([&](double g) { return contact::distance(shape, facet.at(share, width * (g - 0.5))).value; });
+  };
+  const double share = least_between([&](double f) { return across(f).first; }).second;
+  const auto [distance, g] = across(share);
+  const double gap = distance - kept_by(work.solids);
+  nearest.gap = std::min(nearest.gap, gap);
+  if (gap < -tolerance) add_touch(facet, share, width * (g - 0.5), width, work);
+}
+
+void look_at(const Grid& grid, const Facet& facet, const Facet& before, double tolerance, Nearest& nearest,
              Workspace& work) {
   const ContactProblem& solids = work.solids;
   const contact::Shape& shape = solids.solids[facet.solid].shape;
   const double kept = kept_by(solids);
+  double least = std::numeric_limits<double>::infinity();
   // The ruling at a facet's start is that at the end of the one before.
   for (std::size_t i = facet.segment == 0 ? 0 : 1; i <= grid.along; ++i) {
     bool inside = false;
     for (std::size_t k = 0; k <= grid.across; ++k) {
-      const double share = static_cast<double>(i) / static_cast<double>(grid.along);
-      const double v = width * (static_cast<double>(k) / static_cast<double>(grid.across) - 0.5);
-      const Vec3 at = facet.at(share, v);
-      const double gap = facet.fast ? swept_distance(shape, before.at(share, v), at, kept).value
+      const Vec3 at = facet.at(grid.share(i), grid.v(k));
+      const double gap = facet.fast ? swept_distance(shape, before.at(grid.share(i), grid.v(k)), at, kept).value
                                     : contact::distance(shape, at).value - kept;
       work.ruling_gaps[k] = gap;
-      nearest.gap = std::min(nearest.gap, gap);
+      least = std::min(least, gap);
       nearest.near += gap < solids.distance;
       inside = inside || gap < -tolerance;
     }
-    if (inside) add_ruling(grid, facet, i, width, tolerance, work);
+    if (inside) add_ruling(grid, facet, i, tolerance, work);
   }
+  nearest.gap = std::min(nearest.gap, least);
+  const double cell = grid.width / static_cast<double>(grid.across) +
+                      (facet.r1 - facet.r0).norm() / static_cast<double>(grid.along);
+  if (least < cell && has_edges(shape, facet, grid.width)) find_deepest(facet, grid.width, tolerance, nearest, work);
 }
 
 }  // namespace
@@ -193,13 +231,13 @@ void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundin
 
 Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double tolerance, Workspace& work) {
   const ContactProblem& solids = work.solids;
-  const Grid grid = grid_of(ribbon, solids);
+  const Grid grid{static_cast<std::size_t>(solids.along), static_cast<std::size_t>(solids.across), ribbon.width};
   work.ruling_gaps.assign(grid.across + 1, 0.0);
   Nearest nearest{std::numeric_limits<double>::infinity(), 0, 0};
   for (std::size_t i = 0; i < solids.solids.size(); ++i) {
     const contact::Shape& solid = solids.solids[i].shape;
     const double size = inner_radius(solid);
-    for (std::size_t s = 0; s < grid.segments; ++s) {
+    for (std::size_t s = 0; s < shape.q.size(); ++s) {
       Facet facet = facet_of(shape, solids.solids[i].pose, i, s);
       const Facet before = facet_of(work.before, work.solids_before.solids[i].pose, i, s);
       const double way = way_of(before, facet, ribbon.width);
@@ -209,7 +247,7 @@ Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double 
         nearest.gap = std::min(nearest.gap, clear - kept_by(solids));  // a bound from below
         continue;
       }
-      look_at(grid, facet, before, ribbon.width, tolerance, nearest, work);
+      look_at(grid, facet, before, tolerance, nearest, work);
     }
   }
   nearest.distance = nearest.gap + solids.margin;

@@ -10,7 +10,6 @@ namespace wunderlich::solver::two_stage {
 struct Touch {
   Place place;
   std::size_t solid = 0;
-  std::size_t key = 0;         ///< of the point among all points of all solids
   bool fast = false;           ///< may leap over the solid in this step
   double eta_start = 0;        ///< ruling at the step's start: friction acts on what is fixed to the material
   Vec3 from = Vec3::Zero();    ///< where it would be had it gone with the solid [m]
