@@ -19,6 +19,7 @@ constexpr int kMostTraces = 200;    // of a point on its way
 constexpr double kSamePlace = 1e-3; // share of a facet within which points are one
 constexpr int kGoldenSteps = 16;    // in looking for the deepest point
 constexpr double kLeft = 0.8;       // of a depth that a step leaves: it comes out without being thrown
+constexpr double kMostLeft = 0.005; // of the width: no more may be left
 constexpr double kSameDepth = 0.7;  // of the deepest point of a ruling that outer ones must have to count
 constexpr double kStraight = 1.05;  // deeper than the chord of the outermost by less: says nothing new
 
@@ -117,44 +118,48 @@ double start_gap(const Touch& touch, const Workspace& work) {
 
 /// Adds a point to the touches, unless one is there.
 void add_touch(const Facet& facet, double share, double v, double width, Workspace& work) {
-  for (const Touch& touch : work.touches) {
+  // The ruling at a facet's start is that at the end of the one before.
+  const bool shared = share == 0 && facet.segment > 0;
+  const Place here = shared ? Place{facet.segment - 1, 1, v} : Place{facet.segment, share, v};
+  for (Touch& touch : work.touches) {
     const Place& place = touch.place;
-    if (touch.solid == facet.solid && place.segment == facet.segment && std::abs(place.share - share) < kSamePlace &&
-        std::abs(place.v - v) < kSamePlace * width) {
+    if (touch.solid == facet.solid && place.segment == here.segment &&
+        std::abs(place.share - here.share) < kSamePlace && std::abs(place.v - v) < kSamePlace * width) {
+      touch.fast = touch.fast || facet.fast;
       return;
     }
   }
   Touch touch;
-  touch.place = {facet.segment, share, v};
+  touch.place = here;
   touch.solid = facet.solid;
   touch.fast = facet.fast;
   touch.eta_start = eta_at(work.before, touch.place);
   const Vec3 start = material_place(work.before, touch.place, touch.eta_start);
   touch.from = out_of(work.solids.solids[facet.solid].pose, into(work.solids_before.solids[facet.solid].pose, start));
   // The gap of a moment ago, with the solid's own motion: where the strip stood is no reason to throw it.
-  touch.allowed = std::min(0.0, kLeft * start_gap(touch, work));
+  touch.allowed = std::clamp(kLeft * start_gap(touch, work), -kMostLeft * width, 0.0);
   work.touches.push_back(touch);
 }
 
-/// Those of a ruling's points that are inside, by their gaps.
-void add_ruling(const Grid& grid, const Facet& facet, std::size_t i, double tolerance, Workspace& work) {
-  const std::vector<double>& gaps = work.ruling_gaps;
+/// Of points in a line, by their gaps, those that say all there is to say: the deepest, and the outermost that are inside
+/// if they are about as deep. Calls add(index).
+template <class Add>
+void choose(const std::vector<double>& gaps, double tolerance, const Add& add) {
   std::size_t first = gaps.size(), last = 0, deepest = 0;
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     if (gaps[k] >= -tolerance) continue;
-    first = std::min(first, k);
+    if (first == gaps.size()) first = deepest = k;
     last = k;
     if (gaps[k] < gaps[deepest]) deepest = k;
   }
   if (first == gaps.size()) return;
-  if (deepest < first) deepest = first;
   const double share = last > first ? static_cast<double>(deepest - first) / static_cast<double>(last - first) : 0;
   const double chord = (1 - share) * gaps[first] + share * gaps[last];
   const bool straight = deepest != first && deepest != last && gaps[deepest] > kStraight * chord;
-  const auto add = [&](std::size_t k) { add_touch(facet, grid.share(i), grid.v(k), grid.width, work); };
   if (!straight) add(deepest);
   for (const std::size_t k : {first, last}) {
     if (k != deepest && (straight || gaps[k] < kSameDepth * gaps[deepest])) add(k);
+    if (first == last) break;
   }
 }
 
@@ -199,21 +204,28 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
   const ContactProblem& solids = work.solids;
   const contact::Shape& shape = solids.solids[facet.solid].shape;
   const double kept = kept_by(solids);
-  double least = std::numeric_limits<double>::infinity();
-  // The ruling at a facet's start is that at the end of the one before.
-  for (std::size_t i = facet.segment == 0 ? 0 : 1; i <= grid.along; ++i) {
-    bool inside = false;
-    for (std::size_t k = 0; k <= grid.across; ++k) {
+  const std::size_t each = grid.across + 1;
+  work.gaps.resize((grid.along + 1) * each);
+  work.ruling_gaps.resize(grid.along + 1);
+  for (std::size_t i = 0; i <= grid.along; ++i) {
+    work.ruling_gaps[i] = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < each; ++k) {
       const Vec3 at = facet.at(grid.share(i), grid.v(k));
       const double gap = facet.fast ? swept_distance(shape, before.at(grid.share(i), grid.v(k)), at, kept).value
                                     : contact::distance(shape, at).value - kept;
-      work.ruling_gaps[k] = gap;
-      least = std::min(least, gap);
-      nearest.near += gap < solids.distance;
-      inside = inside || gap < -tolerance;
+      work.gaps[i * each + k] = gap;
+      work.ruling_gaps[i] = std::min(work.ruling_gaps[i], gap);
+      nearest.near += gap < solids.distance && (i > 0 || facet.segment == 0);
     }
-    if (inside) add_ruling(grid, facet, i, tolerance, work);
   }
+  // Facets are flat: what holds for the points of a ruling holds for the rulings of a facet.
+  choose(work.ruling_gaps, tolerance, [&](std::size_t i) {
+    work.line_gaps.assign(work.gaps.begin() + static_cast<std::ptrdiff_t>(i * each),
+                          work.gaps.begin() + static_cast<std::ptrdiff_t>((i + 1) * each));
+    choose(work.line_gaps, tolerance,
+           [&](std::size_t k) { add_touch(facet, grid.share(i), grid.v(k), grid.width, work); });
+  });
+  const double least = *std::min_element(work.ruling_gaps.begin(), work.ruling_gaps.end());
   nearest.gap = std::min(nearest.gap, least);
   const double cell = grid.width / static_cast<double>(grid.across) +
                       (facet.r1 - facet.r0).norm() / static_cast<double>(grid.along);
@@ -232,7 +244,6 @@ void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundin
 Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double tolerance, Workspace& work) {
   const ContactProblem& solids = work.solids;
   const Grid grid{static_cast<std::size_t>(solids.along), static_cast<std::size_t>(solids.across), ribbon.width};
-  work.ruling_gaps.assign(grid.across + 1, 0.0);
   Nearest nearest{std::numeric_limits<double>::infinity(), 0, 0};
   for (std::size_t i = 0; i < solids.solids.size(); ++i) {
     const contact::Shape& solid = solids.solids[i].shape;

@@ -31,8 +31,8 @@ struct Nearest {
 void set_solids(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings, double t0, double t1,
                 Workspace& work);
 
-/// Looks at all points of a shape and adds those that are inside a solid to the touches: of a ruling, which is straight,
-/// the deepest and the outermost, since others say the same.
+/// Looks at all points of a shape and adds those that are inside a solid to the touches: of a facet, which is flat, the
+/// deepest and the outermost, since others say the same.
 Nearest find_touches(const geometry::Ribbon& ribbon, const geometry::State& shape, double tolerance, Workspace& work);
 
 /// Normal and gap of a touch where the strip now is.

@@ -64,7 +64,7 @@ struct Workspace {
   // stage contact
   ContactProblem solids_before, solids;  ///< at both ends of the substep
   std::vector<Touch> touches;
-  std::vector<double> ruling_gaps;
+  std::vector<double> gaps, ruling_gaps, line_gaps;  ///< of the points of a facet, least by ruling, of one ruling
   Equations equations;
   std::vector<Row> contact_rows;
   ConeProblem cones;
