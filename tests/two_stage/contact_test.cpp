@@ -141,7 +141,7 @@ TEST(TwoStageContact, ConesFulfilTheirConditions) {
     for (int k = 0; k < kContacts; ++k) {
       for (const double mu : {0.4, -1.0, -1.0}) cones.friction.push_back(mu);
     }
-    const two_stage::ConeReport report = two_stage::solve_cones(1e-9, 5000, cones);
+    const two_stage::ConeReport report = two_stage::solve_cones(1e-9, 0, 5000, cones);
     ASSERT_FALSE(report.capped) << problem;
     const Eigen::Map<const Eigen::VectorXd> x(cones.force.data(), kSize);
     const Eigen::VectorXd w = b + a * x;

@@ -20,7 +20,7 @@ struct Counters {
   double substeps = 0;
   double exceeded = 0;   ///< steps beyond the stability bound
   double unsettled = 0;  ///< substeps whose contacts stopped short of the tolerance
-  double touching = 0;   ///< points of the strip near a solid
+  double touching = 0;   ///< points of the strip that solids push
   double nearest = 1e9;  ///< smallest distance to a solid [m]
 };
 

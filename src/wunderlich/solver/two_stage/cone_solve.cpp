@@ -10,7 +10,7 @@ namespace wunderlich::solver::two_stage {
 namespace {
 
 constexpr int kSweepsBetween = 5;  // Newton's steps
-constexpr double kShared = 1e-10;  // of the mean diagonal, in Newton's system
+constexpr double kShared = 1e-7;  // of the mean diagonal, in Newton's system
 
 double norm(double a, double b) { return std::sqrt(a * a + b * b); }
 
@@ -169,7 +169,7 @@ void put_into_disc(double radius, double& a, double& b) {
   b *= share;
 }
 
-ConeReport solve_cones(double tolerance, int max_sweeps, ConeProblem& problem) {
+ConeReport solve_cones(double tolerance, double enough, int max_sweeps, ConeProblem& problem) {
   ConeReport report;
   while (report.sweeps < max_sweeps) {
     double worst = 0;
@@ -188,6 +188,7 @@ ConeReport solve_cones(double tolerance, int max_sweeps, ConeProblem& problem) {
     if (after <= worst) continue;
     problem.force = problem.force_kept;
     problem.slack = problem.slack_kept;
+    if (worst <= enough) return report;
   }
   report.capped = true;
   return report;

@@ -25,7 +25,8 @@ struct ConeReport {
 
 /// Until a sweep changes no w by more than `tolerance`. Sweeps find out what touches, holds and slides; the equations of
 /// that are then solved at once, since sweeps alone are slow where rows say nearly the same.
-ConeReport solve_cones(double tolerance, int max_sweeps, ConeProblem& problem);
+/// Where Newton's steps do not help, `enough` will do.
+ConeReport solve_cones(double tolerance, double enough, int max_sweeps, ConeProblem& problem);
 
 /// The force of a friction disc nearest to (a, b).
 void put_into_disc(double radius, double& a, double& b);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kGapTolerance = 1e-4;     // of a point, over the width
 constexpr double kConeTolerance = 1e-6;    // of what forces close, over the largest gap at first
+constexpr double kEnough = 0.03;           // of the gaps' tolerance, where forces are slow to find
 constexpr int kMostSweeps = 100;          // of a small dense problem: what is left the next round takes up
 constexpr double kLengthTolerance = 1e-7;  // |e|/l - 1
 constexpr double kLongestTurn = 0.4;       // of an edge or a frame in one round [rad]
@@ -58,20 +59,23 @@ double deepest(const Workspace& work) {
 
 void record(const Nearest& nearest, const Workspace& work, StepReport& report) {
   report.nearest = std::min(report.nearest, nearest.distance);
-  report.touching = nearest.near;
   report.push.setZero();
-  for (const Touch& touch : work.touches) report.push += touch.push * touch.normal + touch.drag;
+  report.touching = 0;
+  for (const Touch& touch : work.touches) {
+    report.push += touch.push * touch.normal + touch.drag;
+    report.touching += touch.push > 0;
+  }
 }
 
 /// One linearisation: what touches and the equations, or the equations alone.
-bool project_once(const Options& options, bool touches, double tolerance, Workspace& work, StepReport& report) {
+bool project_once(const Options& options, bool touches, double tolerance, double enough, Workspace& work, StepReport& report) {
   if (options.opt.projection == Projection::gauss_seidel) {
     if (!touches) work.cones.size = 0;
     solve_contact_sweeps(tolerance, options.opt.max_sweeps, work, report);
     if (!touches) work.cones.force.clear();
     return true;
   }
-  return touches ? solve_contact_direct(tolerance, kMostSweeps, work, report) : solve_equations(work);
+  return touches ? solve_contact_direct(tolerance, enough, kMostSweeps, work, report) : solve_equations(work);
 }
 
 }  // namespace
@@ -103,7 +107,7 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
     settled = out && equations_hold;
     if (settled) break;
     if (round == 0) close = swept ? 0.1 * angle_tolerance * ribbon.width : kConeTolerance * depth;
-    if (!project_once(options, !out, close, work, report)) break;
+    if (!project_once(options, !out, close, kEnough * tolerance, work, report)) break;
     ++report.contact_rounds;
     const double share = longest_motion(ribbon, state.shape, work);
     keep_forces(share, work);
@@ -111,7 +115,6 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
     first = share < 1;
     nearest = find_touches(ribbon, state.shape, tolerance, work);
   }
-  report.touches = static_cast<int>(work.touches.size());
   set_velocity(ribbon, options, dt, state, work);
   record(nearest, work, report);
   if (settled) return true;

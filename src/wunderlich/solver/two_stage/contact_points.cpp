@@ -199,6 +199,13 @@ void find_deepest(const Facet& facet, double width, double tolerance, Nearest& n
   if (gap < -tolerance) add_touch(facet, share, width * (g - 0.5), width, work);
 }
 
+/// A bound from below on the distance of a ruling: distance to a convex solid lies above its tangent plane.
+double ruling_clearance(const contact::Shape& shape, const Facet& facet, double share, double width) {
+  const Vec3 middle = facet.at(share, 0);
+  const Distance here = contact::distance(shape, middle);
+  return here.value - std::abs(here.normal.dot(facet.at(share, 0.5 * width) - middle));
+}
+
 void look_at(const Grid& grid, const Facet& facet, const Facet& before, double tolerance, Nearest& nearest,
              Workspace& work) {
   const ContactProblem& solids = work.solids;
@@ -208,14 +215,15 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
   work.gaps.resize((grid.along + 1) * each);
   work.ruling_gaps.resize(grid.along + 1);
   for (std::size_t i = 0; i <= grid.along; ++i) {
-    work.ruling_gaps[i] = std::numeric_limits<double>::infinity();
+    const double clear = facet.fast ? 0 : ruling_clearance(shape, facet, grid.share(i), grid.width) - kept;
+    work.ruling_gaps[i] = clear > 0 ? clear : std::numeric_limits<double>::infinity();
+    if (clear > 0) continue;
     for (std::size_t k = 0; k < each; ++k) {
       const Vec3 at = facet.at(grid.share(i), grid.v(k));
       const double gap = facet.fast ? swept_distance(shape, before.at(grid.share(i), grid.v(k)), at, kept).value
                                     : contact::distance(shape, at).value - kept;
       work.gaps[i * each + k] = gap;
       work.ruling_gaps[i] = std::min(work.ruling_gaps[i], gap);
-      nearest.near += gap < solids.distance && (i > 0 || facet.segment == 0);
     }
   }
   // Facets are flat: what holds for the points of a ruling holds for the rulings of a facet.
@@ -244,7 +252,7 @@ void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundin
 Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double tolerance, Workspace& work) {
   const ContactProblem& solids = work.solids;
   const Grid grid{static_cast<std::size_t>(solids.along), static_cast<std::size_t>(solids.across), ribbon.width};
-  Nearest nearest{std::numeric_limits<double>::infinity(), 0, 0};
+  Nearest nearest{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t i = 0; i < solids.solids.size(); ++i) {
     const contact::Shape& solid = solids.solids[i].shape;
     const double size = inner_radius(solid);
@@ -254,7 +262,7 @@ Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double 
       const double way = way_of(before, facet, ribbon.width);
       facet.fast = way > kFast * size;
       const double clear = contact::distance(solid, facet.at(0.5, 0)).value - reach(facet, ribbon.width);
-      if (clear - kept_by(solids) > solids.distance + (facet.fast ? way : 0)) {
+      if (clear - kept_by(solids) > (facet.fast ? way : 0)) {
         nearest.gap = std::min(nearest.gap, clear - kept_by(solids));  // a bound from below
         continue;
       }

@@ -24,7 +24,6 @@ struct Touch {
 struct Nearest {
   double gap = 0;       ///< smallest, beyond thickness and margin [m]
   double distance = 0;  ///< smallest, beyond the thickness [m]
-  int near = 0;         ///< points within contact.distance
 };
 
 /// The solids at both ends of a substep, and no touches.

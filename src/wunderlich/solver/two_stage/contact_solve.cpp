@@ -182,11 +182,11 @@ void assemble_touches(const Ribbon& ribbon, const geometry::State& shape, double
   }
 }
 
-bool solve_contact_direct(double tolerance, int max_sweeps, Workspace& work, StepReport& report) {
+bool solve_contact_direct(double tolerance, double enough, int max_sweeps, Workspace& work, StepReport& report) {
   if (!reduce_equations(work)) return false;
   assemble_cones(work);
   work.force_before = work.cones.force;
-  const ConeReport solved = solve_cones(tolerance, max_sweeps, work.cones);
+  const ConeReport solved = solve_cones(tolerance, enough, max_sweeps, work.cones);
   report.contact_sweeps += solved.sweeps;
   report.contact_capped += solved.capped;
   const std::size_t rows = work.equations.rows.size();

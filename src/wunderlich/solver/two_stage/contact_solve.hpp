@@ -12,7 +12,7 @@ void assemble_touches(const geometry::Ribbon& ribbon, const geometry::State& sha
 
 /// Motion that keeps the equations and what touches, with the least |motion|_W, into work.motion; forces into
 /// work.cones.force. The equations are eliminated by a banded solve, the rest is small and dense.
-bool solve_contact_direct(double tolerance, int max_sweeps, Workspace& work, StepReport& report);
+bool solve_contact_direct(double tolerance, double enough, int max_sweeps, Workspace& work, StepReport& report);
 
 /// The same with all rows swept together, as the paper does.   @eq Shen2015:22
 void solve_contact_sweeps(double tolerance, int max_sweeps, Workspace& work, StepReport& report);

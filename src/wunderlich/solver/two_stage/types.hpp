@@ -153,12 +153,11 @@ struct StepReport {
   int shifts = 0;              ///< Hessians that had to be made positive
   int flattened = 0;           ///< rulings set by the flat-region rule of Eq. 8
   double gradient_change = 0;  ///< at the last iteration of stage opt
-  int touches = 0;             ///< points that solids pushed in the last substep
   int contact_rounds = 0;      ///< linearisations of stage contact
   int contact_sweeps = 0;      ///< of its Gauss-Seidel
   int contact_capped = 0;      ///< times that reached its cap
   int contact_unsettled = 0;   ///< substeps whose contacts did not settle to the tolerance
-  int touching = 0;            ///< points within contact.distance of a solid at the end
+  int touching = 0;            ///< points that solids push in the last substep
   double nearest = std::numeric_limits<double>::infinity();  ///< smallest distance of a point to a solid in the step,
                                                              ///< beyond the thickness; if far a bound from below [m]
   Vec3 push = Vec3::Zero();    ///< what solids exert on the strip in the last substep [N]
