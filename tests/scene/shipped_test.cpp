@@ -27,7 +27,7 @@ TEST(ShippedScenes, AreThoseOfTheContract) {
   std::set<std::string> names;
   for (const ShippedScene& scene : shipped_scenes()) names.insert(scene.name);
   for (const char* name : {"moebius", "figure-eight", "twist-pi", "twist-clamped", "cantilever", "buckled-strip",
-                           "ring", "helix", "swing", "whip", "drape-cylinder", "belt-release-stiff",
+                           "ring", "helix", "swing", "whip", "drape-cylinder", "slide-cylinder", "belt-release-stiff",
                            "belt-release-soft", "twist-release-stiff", "twist-release-soft"}) {
     EXPECT_TRUE(names.count(name)) << name;
   }

@@ -10,7 +10,7 @@ namespace wunderlich::solver::two_stage {
 namespace {
 
 constexpr int kSweepsBetween = 5;  // Newton's steps
-constexpr double kShared = 1e-7;  // of the mean diagonal, in Newton's system
+constexpr double kShared = 1e-7;   // of the mean diagonal, in Newton's system
 
 double norm(double a, double b) { return std::sqrt(a * a + b * b); }
 
@@ -124,7 +124,8 @@ void solve_active(ConeProblem& problem) {
     for (std::size_t i = 0; i < count; ++i) {
       const auto row = static_cast<std::size_t>(problem.rows[i]);
       double value = problem.matrix[column * size + row];
-      if (slides) value += a * problem.matrix[(column + 1) * size + row] + b * problem.matrix[(column + 2) * size + row];
+      if (slides)
+        value += a * problem.matrix[(column + 1) * size + row] + b * problem.matrix[(column + 2) * size + row];
       problem.system[i * count + j] = value;
     }
     // Rows that say the same share what they hold.

@@ -23,9 +23,9 @@ struct ConeReport {
   bool capped = false;
 };
 
-/// Until a sweep changes no w by more than `tolerance`. Sweeps find out what touches, holds and slides; the equations of
-/// that are then solved at once, since sweeps alone are slow where rows say nearly the same.
-/// Where Newton's steps do not help, `enough` will do.
+/// Until a sweep changes no w by more than `tolerance`. Sweeps find out what touches, holds and slides; the equations
+/// of that are then solved at once, since sweeps alone are slow where rows say nearly the same. Where Newton's steps do
+/// not help, `enough` will do.
 ConeReport solve_cones(double tolerance, double enough, int max_sweeps, ConeProblem& problem);
 
 /// The force of a friction disc nearest to (a, b).

@@ -16,7 +16,7 @@ namespace {
 constexpr double kGapTolerance = 1e-4;     // of a point, over the width
 constexpr double kConeTolerance = 1e-6;    // of what forces close, over the largest gap at first
 constexpr double kEnough = 0.03;           // of the gaps' tolerance, where forces are slow to find
-constexpr int kMostSweeps = 100;          // of a small dense problem: what is left the next round takes up
+constexpr int kMostSweeps = 100;           // of a small dense problem: what is left the next round takes up
 constexpr double kLengthTolerance = 1e-7;  // |e|/l - 1
 constexpr double kLongestTurn = 0.4;       // of an edge or a frame in one round [rad]
 constexpr double kToBoundary = 0.9;        // share of the way to |x| = 1 in one round
@@ -68,7 +68,8 @@ void record(const Nearest& nearest, const Workspace& work, StepReport& report) {
 }
 
 /// One linearisation: what touches and the equations, or the equations alone.
-bool project_once(const Options& options, bool touches, double tolerance, double enough, Workspace& work, StepReport& report) {
+bool project_once(const Options& options, bool touches, double tolerance, double enough, Workspace& work,
+                  StepReport& report) {
   if (options.opt.projection == Projection::gauss_seidel) {
     if (!touches) work.cones.size = 0;
     solve_contact_sweeps(tolerance, options.opt.max_sweeps, work, report);

@@ -14,14 +14,14 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kFast = 0.25;      // way in a step over the size of a solid, beyond which points are followed
-constexpr int kMostTraces = 200;    // of a point on its way
-constexpr double kSamePlace = 1e-3; // share of a facet within which points are one
-constexpr int kGoldenSteps = 16;    // in looking for the deepest point
-constexpr double kLeft = 0.8;       // of a depth that a step leaves: it comes out without being thrown
-constexpr double kMostLeft = 0.005; // of the width: no more may be left
-constexpr double kSameDepth = 0.7;  // of the deepest point of a ruling that outer ones must have to count
-constexpr double kStraight = 1.05;  // deeper than the chord of the outermost by less: says nothing new
+constexpr double kFast = 0.25;       // way in a step over the size of a solid, beyond which points are followed
+constexpr int kMostTraces = 200;     // of a point on its way
+constexpr double kSamePlace = 1e-3;  // share of a facet within which points are one
+constexpr int kGoldenSteps = 16;     // in looking for the deepest point
+constexpr double kLeft = 0.8;        // of a depth that a step leaves: it comes out without being thrown
+constexpr double kMostLeft = 0.005;  // of the width: no more may be left
+constexpr double kSameDepth = 0.7;   // of the deepest point of a ruling that outer ones must have to count
+constexpr double kStraight = 1.05;   // deeper than the chord of the outermost by less: says nothing new
 
 /// Radius of the largest ball inside.
 double inner_radius(const contact::Shape& shape) {
@@ -87,7 +87,8 @@ double way_of(const Facet& before, const Facet& after, double width) {
 }
 
 /// Distance of a point that came from `before`, less what is kept. If it meets the solid on its way, that to the plane
-/// tangent where it meets: distance to a convex solid lies above its tangents, so that what is beyond that plane is out.
+/// tangent where it meets: distance to a convex solid lies above its tangents, so that what is beyond that plane is
+/// out.
 Distance swept_distance(const contact::Shape& shape, const Vec3& before, const Vec3& after, double kept) {
   const Vec3 way = after - before;
   const double length = way.norm(), close = 1e-3 * inner_radius(shape);
@@ -141,8 +142,8 @@ void add_touch(const Facet& facet, double share, double v, double width, Workspa
   work.touches.push_back(touch);
 }
 
-/// Of points in a line, by their gaps, those that say all there is to say: the deepest, and the outermost that are inside
-/// if they are about as deep. Calls add(index).
+/// Of points in a line, by their gaps, those that say all there is to say: the deepest, and the outermost that are
+/// inside if they are about as deep. Calls add(index).
 template <class Add>
 void choose(const std::vector<double>& gaps, double tolerance, const Add& add) {
   std::size_t first = gaps.size(), last = 0, deepest = 0;
@@ -235,8 +236,8 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
   });
   const double least = *std::min_element(work.ruling_gaps.begin(), work.ruling_gaps.end());
   nearest.gap = std::min(nearest.gap, least);
-  const double cell = grid.width / static_cast<double>(grid.across) +
-                      (facet.r1 - facet.r0).norm() / static_cast<double>(grid.along);
+  const double cell =
+      grid.width / static_cast<double>(grid.across) + (facet.r1 - facet.r0).norm() / static_cast<double>(grid.along);
   if (least < cell && has_edges(shape, facet, grid.width)) find_deepest(facet, grid.width, tolerance, nearest, work);
 }
 

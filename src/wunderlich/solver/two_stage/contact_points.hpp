@@ -1,4 +1,5 @@
-/// Where the reconstructed surface meets solids: fixed material points S(u, v) with the solid's normal.   @eq Shen2015:6.3
+/// Where the reconstructed surface meets solids: fixed material points S(u, v) with the solid's normal.
+/// @eq Shen2015:6.3
 #pragma once
 
 #include "wunderlich/solver/chain_contact.hpp"

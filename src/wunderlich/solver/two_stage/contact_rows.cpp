@@ -96,8 +96,7 @@ double eta_at(const geometry::State& shape, const Place& place) {
 
 Vec3 material_place(const geometry::State& shape, const Place& place, double eta) {
   const std::size_t s = place.segment;
-  return (1 - place.share) * shape.r[s] + place.share * shape.r[s + 1] +
-         shape.q[s] * Vec3(0, place.v, place.v * eta);
+  return (1 - place.share) * shape.r[s] + place.share * shape.r[s + 1] + shape.q[s] * Vec3(0, place.v, place.v * eta);
 }
 
 Vec3 place_of(const geometry::State& shape, const Place& place) {
@@ -119,7 +118,8 @@ void set_metric(const Ribbon& ribbon, const Options& options, double dt, Workspa
       inverse[kEtaPlace] = printed ? 1 : 1 / (inertia + stiffness * ribbon.rest_length[s]);
     }
     if (b >= ribbon.rest_length.size() || work.holding.frame_held[b]) continue;
-    // |dq|^2 is a quarter of |theta|^2. Else: the stiffness that E_para holds tangents with, and the inertia of the turn.
+    // |dq|^2 is a quarter of |theta|^2. Else: the stiffness that E_para holds tangents with, and the inertia of the
+    // turn.
     const double across = printed ? 4 : 0.5 / work.parallel_weight;
     const double about = printed ? 4 : dt * dt / energy::turn_inertia(ribbon, b);
     inverse.segment<3>(kThetaPlace) = Vec3(across, across, about);
@@ -147,8 +147,8 @@ bool assemble_equations(const Ribbon& ribbon, const Options& options, const geom
     worsen(row.residual, equations.worst_length);
   }
   for (std::size_t h = 0; h < work.hinges.size(); ++h) {
-    const auto at = static_cast<std::size_t>(
-        row_at(ribbon, static_cast<std::size_t>(hinge_block(ribbon, work.hinges[h]))));
+    const auto at =
+        static_cast<std::size_t>(row_at(ribbon, static_cast<std::size_t>(hinge_block(ribbon, work.hinges[h]))));
     hinge_rows(ribbon, shape, h, work, equations.rows[at + 1], equations.rows[at + 2]);
     worsen(equations.rows[at + 1].residual, equations.worst_angle);
     worsen(equations.rows[at + 2].residual, equations.worst_angle);
@@ -174,8 +174,8 @@ bool factor_equations(Workspace& work) {
     const auto count = static_cast<std::size_t>(equations.touch_count[b]);
     for (std::size_t i = 0; i < count; ++i) {
       const Touching& a = equations.touch[b][i];
-      const Vec7 weighted = equations.inverse_metric[b].cwiseProduct(
-          equations.rows[static_cast<std::size_t>(a.row)].slope.col(a.slot));
+      const Vec7 weighted =
+          equations.inverse_metric[b].cwiseProduct(equations.rows[static_cast<std::size_t>(a.row)].slope.col(a.slot));
       for (std::size_t j = 0; j <= i; ++j) {
         const Touching& c = equations.touch[b][j];
         equations.normal.at(a.row, c.row) +=

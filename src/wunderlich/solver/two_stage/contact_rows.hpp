@@ -1,9 +1,9 @@
-/// Constraints that a contact changes, linearised in (r, q, eta) together: lengths, gamma = 0, kappa eta = tau, and points
-/// of the surface against solids.   @eq Shen2015:6.3
+/// Constraints that a contact changes, linearised in (r, q, eta) together: lengths, gamma = 0, kappa eta = tau, and
+/// points of the surface against solids.   @eq Shen2015:6.3
 ///
-/// Unknowns come in blocks of seven, one a node: r_i, eta_i, theta^i of the segment that starts there; a loop's last node
-/// is its first. Frames follow their edges by the smallest rotation, and theta is what they turn beside that: a node
-/// that is pushed takes the frames of its segments along, as stage opt would make them.   @eq Shen2015:18
+/// Unknowns come in blocks of seven, one a node: r_i, eta_i, theta^i of the segment that starts there; a loop's last
+/// node is its first. Frames follow their edges by the smallest rotation, and theta is what they turn beside that: a
+/// node that is pushed takes the frames of its segments along, as stage opt would make them.   @eq Shen2015:18
 #pragma once
 
 #include <array>

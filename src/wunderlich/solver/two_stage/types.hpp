@@ -124,7 +124,7 @@ struct Load {
 struct Drive {
   std::vector<Support> supports;
   std::vector<Load> loads;
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
+  Vec3 gravity = Vec3::Zero();                             ///< [m/s^2]
   const constraint::Surroundings* surroundings = nullptr;  ///< whose obstacles are met, at the state's own time; no
                                                            ///< more of it is read; nullptr: none
 };
@@ -160,7 +160,7 @@ struct StepReport {
   int touching = 0;            ///< points that solids push in the last substep
   double nearest = std::numeric_limits<double>::infinity();  ///< smallest distance of a point to a solid in the step,
                                                              ///< beyond the thickness; if far a bound from below [m]
-  Vec3 push = Vec3::Zero();    ///< what solids exert on the strip in the last substep [N]
+  Vec3 push = Vec3::Zero();                                  ///< what solids exert on the strip in the last substep [N]
   ConstraintErrors constraints;
   double contact_seconds = 0;
   double ode_seconds = 0, opt_seconds = 0, other_seconds = 0;
