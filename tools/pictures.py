@@ -21,6 +21,7 @@ MORE = {
     "belt-release-soft": {"set": ["solver.duration=0.3"]},
     "twist-release-stiff": {"set": ["solver.duration=0.3"]},
     "twist-release-soft": {"set": ["solver.duration=0.3"]},
+    "slide-cylinder": {"set": ["solver.duration=0.4"]},
     "swing": {"set": ["solver.duration=0.72"]},
     "whip": {"set": ["solver.duration=0.6"]},
 }

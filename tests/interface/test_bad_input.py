@@ -78,9 +78,8 @@ class BadInput(ProgramTest):
 
     def test_obstacles_where_they_cannot_be(self):
         solid = STRIP[: STRIP.index("solver:")] + "solver: {method: %s}\nobstacles: [{shape: sphere, radius: 0.1%s}]\n"
-        self.refused(solid % ("two-stage", ""), "obstacles", "use `implicit`")
         self.refused(solid % ("equilibrium", ", friction: 0.2"), "obstacles.0", "use `implicit`")
-        for method in ("implicit", "equilibrium"):
+        for method in ("implicit", "two-stage", "equilibrium"):
             self.refused(solid % (method, ""), "obstacles.0: the strip starts", "inside")
 
     def test_keys_of_later_versions(self):

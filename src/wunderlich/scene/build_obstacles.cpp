@@ -104,9 +104,6 @@ Obstacle obstacle_of(const Cell& cell, const Cell& contact) {
 
 std::vector<Obstacle> build_obstacles(const Cell& root, int segments) {
   const Cell list = child(root, "obstacles");
-  if (count(list) > 0 && method_of(root) == Method::two_stage) {
-    fail(list, "not with `solver.method: two-stage`; use `implicit`");
-  }
   const std::size_t pairs = count(list) * static_cast<std::size_t>(segments);
   if (pairs > kMostPairs) {
     fail(list, fmt::format("{} pairs of obstacles and segments; at most {} fit into memory", pairs, kMostPairs));

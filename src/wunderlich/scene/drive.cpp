@@ -14,6 +14,7 @@ two_stage::Drive drive_between(const Scene& scene, const geometry::Ribbon& ribbo
                                double t0, double t1) {
   two_stage::Drive drive;
   drive.gravity = scene.surroundings.gravity;
+  drive.surroundings = &scene.surroundings;
   for (const constraint::Support& support : scene.surroundings.supports) {
     if (!holds(support, t0)) continue;
     const Pose before = constraint::pose_at(support.motion, t0), after = constraint::pose_at(support.motion, t1);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/energy/motion.hpp"
 #include "wunderlich/scene/drive.hpp"
@@ -16,12 +18,18 @@ constexpr double kManySubsteps = 100;  // in a step, of which a user should know
 struct Counters {
   double taken = 0;
   double substeps = 0;
-  double exceeded = 0;  ///< steps beyond the stability bound
+  double exceeded = 0;   ///< steps beyond the stability bound
+  double unsettled = 0;  ///< substeps whose contacts stopped short of the tolerance
+  double touching = 0;   ///< points of the strip that solids push
+  double nearest = 1e9;  ///< smallest distance to a solid [m]
 };
 
 template <class Counters, class State, class Visit>
 void visit_all(Counters& counters, State& state, const Visit& visit) {
-  for (auto* c : {&counters.taken, &counters.substeps, &counters.exceeded}) visit(*c);
+  for (auto* c : {&counters.taken, &counters.substeps, &counters.exceeded, &counters.unsettled, &counters.touching,
+                  &counters.nearest}) {
+    visit(*c);
+  }
   const auto vectors = [&](auto& list) {
     for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
   };
@@ -50,6 +58,7 @@ class TwoStageMover : public Mover {
         two_stage::step(ribbon_, drive, scene_.solver.two_stage, t1 - t0, state_, work_);
     recording.add_phase_time("ode", report.ode_seconds);
     recording.add_phase_time("opt", report.opt_seconds);
+    if (!scene_.surroundings.obstacles.empty()) recording.add_phase_time("contact", report.contact_seconds);
     recording.add_phase_time("other", report.other_seconds);
     stable_step_ = report.stable_step;
     if (!report.accepted) return {false, 0, report.failure};
@@ -57,6 +66,9 @@ class TwoStageMover : public Mover {
     counters_.taken += 1;
     counters_.substeps += report.substeps;
     counters_.exceeded += report.exceeds_bound ? 1 : 0;
+    counters_.unsettled += report.contact_unsettled;
+    counters_.touching = report.touching;
+    counters_.nearest = std::min(counters_.nearest, report.nearest);
     return {true, report.iterations, ""};
   }
 
@@ -72,6 +84,14 @@ class TwoStageMover : public Mover {
   double kinetic_energy() const override { return energy::kinetic_value(ribbon_, state_.shape); }
 
   void add_findings(Summary& summary) const override {
+    if (!scene_.surroundings.obstacles.empty()) {
+      const double nearest = counters_.nearest;
+      summary.contact = ContactSummary{static_cast<int>(counters_.touching), std::max(0.0, -nearest), nearest};
+    }
+    if (counters_.unsettled > 0) {
+      summary.warnings.push_back("contacts stopped short of their tolerance in " + text_of(counters_.unsettled) +
+                                 " substeps; the penetration is within 1 % of the width");
+    }
     if (counters_.exceeded > 0) {
       summary.warnings.push_back("the step of " + text_of(scene_.solver.time_step) +
                                  " s is beyond the stability bound of " + text_of(stable_step_) +

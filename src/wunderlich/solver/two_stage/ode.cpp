@@ -100,6 +100,8 @@ Vec3 node_tangent(const Ribbon& ribbon, const geometry::State& shape, std::size_
   return chord.stableNormalized();
 }
 
+}  // namespace
+
 void damp(const Ribbon& ribbon, const OdeOptions& options, double dt, geometry::State& shape) {
   const bool per_step = options.damping == Damping::per_step;
   const double tangent = per_step ? options.factor_tangent : std::exp(-options.damping_tangent * dt);
@@ -111,8 +113,6 @@ void damp(const Ribbon& ribbon, const OdeOptions& options, double dt, geometry::
     shape.r_dot[i] = tangent * along + normal * (shape.r_dot[i] - along);
   }
 }
-
-}  // namespace
 
 int project_lengths(const Ribbon& ribbon, const OdeOptions& options, geometry::State& shape, Workspace& work) {
   for (int iteration = 0;; ++iteration) {

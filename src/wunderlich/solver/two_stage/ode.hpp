@@ -14,4 +14,7 @@ bool advance_centerline(const geometry::Ribbon& ribbon, const Drive& drive, cons
 /// iterations used, or -1 if the tolerance was not reached.   @eq Shen2015:12
 int project_lengths(const geometry::Ribbon& ribbon, const OdeOptions& options, geometry::State& shape, Workspace& work);
 
+/// Damping of `shape.r_dot` along and across the centerline, as it is applied once a step.
+void damp(const geometry::Ribbon& ribbon, const OdeOptions& options, double dt, geometry::State& shape);
+
 }  // namespace wunderlich::solver::two_stage

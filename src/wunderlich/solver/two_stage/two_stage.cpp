@@ -6,6 +6,7 @@
 
 #include "wunderlich/energy/parallel_coupling.hpp"
 #include "wunderlich/energy/torsional_inertia.hpp"
+#include "wunderlich/solver/two_stage/contact.hpp"
 #include "wunderlich/solver/two_stage/objective.hpp"
 #include "wunderlich/solver/two_stage/ode.hpp"
 #include "wunderlich/solver/two_stage/opt.hpp"
@@ -143,6 +144,9 @@ bool substep(const Ribbon& ribbon, const Drive& drive, const Options& options, d
   const bool settled = settle_rulings(ribbon, options, state, work, report);
   watch.add_to(report.opt_seconds);
   if (!settled) return false;
+  const bool clear = settle_contact(ribbon, drive, options, dt, state, work, report);
+  watch.add_to(report.contact_seconds);
+  if (!clear) return false;
   record_spin(options, dt, work, state);
   state.shape.time += dt;
   return true;

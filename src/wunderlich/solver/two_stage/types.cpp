@@ -14,6 +14,7 @@ Options printed_options() {
   options.opt.central_rate = true;
   options.opt.step_size = 0.05;
   options.opt.max_iterations = 30;
+  options.contact.metric = ContactMetric::printed;
   options.inertia = TorsionalInertia::off;
   options.substeps = false;
   return options;

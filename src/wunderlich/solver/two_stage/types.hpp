@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -74,10 +75,23 @@ struct OptOptions {
   bool accept_inexact = false;         ///< accept a step whose constraints did not reach the tolerance
 };
 
+/// What measures a motion in a contact.   @eq Shen2015:22
+enum class ContactMetric {
+  physical,  ///< masses; of frames what E_para and the inertia of the turn hold them with, of rulings D l/w
+  printed,   ///< masses of velocities, |dq|^2 and |d eta|^2: mixes units
+};
+
+struct ContactOptions {
+  ContactMetric metric = ContactMetric::physical;
+  int max_rounds = 30;             ///< of finding what touches and projecting
+  double most_penetration = 0.01;  ///< share of the width beyond which a step fails
+};
+
 struct Options {
   energy::Model model;
   OdeOptions ode;
   OptOptions opt;
+  ContactOptions contact;
   TorsionalInertia inertia = TorsionalInertia::physical;
   double inertia_scale = 1;   ///< Gamma, in [0, 1]
   bool substeps = true;       ///< divide a step that exceeds the stability bound
@@ -110,7 +124,9 @@ struct Load {
 struct Drive {
   std::vector<Support> supports;
   std::vector<Load> loads;
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
+  Vec3 gravity = Vec3::Zero();                             ///< [m/s^2]
+  const constraint::Surroundings* surroundings = nullptr;  ///< whose obstacles are met, at the state's own time; no
+                                                           ///< more of it is read; nullptr: none
 };
 
 /// What a checkpoint must hold for a run to go on bit for bit.
@@ -137,7 +153,16 @@ struct StepReport {
   int shifts = 0;              ///< Hessians that had to be made positive
   int flattened = 0;           ///< rulings set by the flat-region rule of Eq. 8
   double gradient_change = 0;  ///< at the last iteration of stage opt
+  int contact_rounds = 0;      ///< linearisations of stage contact
+  int contact_sweeps = 0;      ///< of its Gauss-Seidel
+  int contact_capped = 0;      ///< times that reached its cap
+  int contact_unsettled = 0;   ///< substeps whose contacts did not settle to the tolerance
+  int touching = 0;            ///< points that solids push in the last substep
+  double nearest = std::numeric_limits<double>::infinity();  ///< smallest distance of a point to a solid in the step,
+                                                             ///< beyond the thickness; if far a bound from below [m]
+  Vec3 push = Vec3::Zero();                                  ///< what solids exert on the strip in the last substep [N]
   ConstraintErrors constraints;
+  double contact_seconds = 0;
   double ode_seconds = 0, opt_seconds = 0, other_seconds = 0;
 };
 

@@ -8,6 +8,8 @@
 #include "wunderlich/geometry/state.hpp"
 #include "wunderlich/math/banded.hpp"
 #include "wunderlich/math/lbfgs.hpp"
+#include "wunderlich/solver/two_stage/cone_solve.hpp"
+#include "wunderlich/solver/two_stage/contact_points.hpp"
 #include "wunderlich/solver/two_stage/range_space.hpp"
 #include "wunderlich/solver/two_stage/types.hpp"
 
@@ -58,6 +60,20 @@ struct Workspace {
   std::vector<Quat> q_start, lbfgs_q;
   std::vector<double> eta_start, lbfgs_eta, gradient_change;
   RangeSpace range;
+
+  // stage contact
+  ContactProblem solids_before, solids;  ///< at both ends of the substep
+  std::vector<Touch> touches;
+  std::vector<double> gaps, ruling_gaps, line_gaps;  ///< of the points of a facet, least by ruling, of one ruling
+  Equations equations;
+  std::vector<Row> contact_rows;
+  ConeProblem cones;
+  std::vector<double> force_before;
+  std::vector<double> reduced, coupling;  ///< D^-1/2 L^-1 of the equations' residuals, of J_e W^-1 J^T
+  std::vector<int> coupling_start;
+  std::vector<Vec7> motion;
+  std::vector<Vec3> edge_start;
+
   math::Lbfgs memory;
   State trial;
   geometry::State before;
