@@ -83,7 +83,7 @@ class BadInput(ProgramTest):
             self.refused(solid % (method, ""), "obstacles.0: the strip starts", "inside")
 
     def test_keys_of_later_versions(self):
-        self.refused(STRIP + "contact: {self: true}\n", "bad.yaml:7:11: contact.self", "not supported yet by this version")
+        self.refused(STRIP + "ribbons: []\n", "bad.yaml:7:", "ribbons", "not supported yet by this version")
 
     def test_output_folder_that_cannot_be_written(self):
         self.write("file", "something")
