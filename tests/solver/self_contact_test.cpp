@@ -69,8 +69,9 @@ struct Linear {
 };
 
 Linear linear(const Coil& coil, const Chain& chain) {
-  Kinematics k;
+  Kinematics k, start;  // loads are counted from the coil as it was
   geometry::forward_kinematics(coil.ribbon, chain, k);
+  geometry::forward_kinematics(coil.ribbon, coil.chain, start);
   solver::Touching touching;
   solver::SelfSearch search;
   find_pairs(coil.ribbon, coil.problem.self, chain, k, search, touching.self);
@@ -80,7 +81,7 @@ Linear linear(const Coil& coil, const Chain& chain) {
   math::ChainStep step;
   linearise(coil.ribbon, coil.problem, chain, k, {}, touching, system);
   EXPECT_TRUE(chain_step(system, work, step));
-  Linear out{objective(coil.ribbon, coil.problem, chain, k, k).total() +
+  Linear out{objective(coil.ribbon, coil.problem, chain, k, start).total() +
                  self_energy(coil.ribbon, coil.problem.self, touching.self),
              VectorXd(2 * coil.ribbon.node_count()), VectorXd(2 * coil.ribbon.node_count())};
   for (std::size_t i = 0; i < work.gradient.size(); ++i) {

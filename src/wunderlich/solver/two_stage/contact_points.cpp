@@ -245,8 +245,15 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
 
 void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t0, double t1,
                 Workspace& work) {
-  place_solids(ribbon, surroundings, t0, work.solids_before);
-  place_solids(ribbon, surroundings, t1, work.solids);
+  const auto place = [&](double t, ContactProblem& problem) {
+    place_solids(ribbon, surroundings, t, problem);
+    problem.solids.clear();  // boxes too, which are triangles there
+    for (const constraint::Obstacle& obstacle : surroundings.obstacles) {
+      problem.solids.push_back({obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction});
+    }
+  };
+  place(t0, work.solids_before);
+  place(t1, work.solids);
   work.touches.clear();
 }
 
