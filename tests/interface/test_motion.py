@@ -32,8 +32,10 @@ class Motion(ProgramTest):
                 continue
             with self.subTest(scene=scene.stem):
                 self.expect(0, "run", scene.stem, "--out", "run", "--formats", "none", "--set", "solver.duration=0.3")
+                # Contact rows are Newton's steps between sweeps; they leave lengths to 1e-7 (docs/two-stage.md).
+                length = 1e-7 if "obstacles:" in scene.read_text() else 1e-9
                 for row in self.history():
-                    self.assertLessEqual(row["max_length_error"], 1e-9)
+                    self.assertLessEqual(row["max_length_error"], length)
                     self.assertLessEqual(row["max_torsion_mismatch"], 1e-6)
                     self.assertLess(row["max_ruling_ratio"], 1)
                     self.assertLess(row["area_error"], 1e-2)
