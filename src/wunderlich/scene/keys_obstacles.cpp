@@ -118,7 +118,7 @@ const std::vector<Key> table = {
      "",
      {},
      "Gap below which contact forces act; at rest a part of it stays. Two-stage: how fine the points are that feel a "
-     "solid; up to half of it stays. Default: width/30."},
+     "solid; up to a quarter of it stays. Default: width/30."},
     {"contact.thickness",
      Type::number,
      "m",

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kFast = 0.25;       // way in a step over the size of a solid, beyond which points are followed
 constexpr int kMostTraces = 200;     // of a point on its way
+constexpr int kMostCells = 12;       // along and across a facet
 constexpr double kSamePlace = 1e-3;  // share of a facet within which points are one
 constexpr int kGoldenSteps = 16;     // in looking for the deepest point
 constexpr double kLeft = 0.8;        // of a depth that a step leaves: it comes out without being thrown
@@ -241,12 +242,33 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
   if (least < cell && has_edges(shape, facet, grid.width)) find_deepest(facet, grid.width, tolerance, nearest, work);
 }
 
+/// Cells of the grid such that what bends the most bulges between points by a quarter of contact.distance. Finer than
+/// the barrier's, where every point costs: here few become rows, and fewer do if they are close enough to tell the
+/// deepest.
+void refine(const Ribbon& ribbon, ContactProblem& problem) {
+  double radius = std::numeric_limits<double>::infinity();
+  for (const ContactProblem::Solid& solid : problem.solids) {
+    const auto* cylinder = std::get_if<contact::Cylinder>(&solid.shape);
+    radius = std::min(radius, cylinder != nullptr ? cylinder->radius : inner_radius(solid.shape));
+  }
+  const double cell = std::sqrt(0.5 * radius * problem.distance);
+  const auto cells = [&](double size) {
+    return static_cast<int>(std::clamp(std::ceil(size / cell), 1.0, static_cast<double>(kMostCells)));
+  };
+  const double longest = *std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end());
+  problem.along = cells(longest);
+  problem.across = cells(ribbon.width);
+  const double side = std::max(ribbon.width / problem.across, longest / problem.along);
+  problem.margin = std::min(0.5 * side * side / radius, problem.distance);
+}
+
 }  // namespace
 
 void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t0, double t1,
                 Workspace& work) {
   const auto place = [&](double t, ContactProblem& problem) {
     place_solids(ribbon, surroundings, t, problem);
+    refine(ribbon, problem);
     problem.solids.clear();  // boxes too, which are triangles there
     for (const constraint::Obstacle& obstacle : surroundings.obstacles) {
       problem.solids.push_back({obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction});
