@@ -61,7 +61,7 @@ void StepDrape(benchmark::State& state) {
     iterations += report.iterations;
     if (report.accepted) return;
     if (halvings == 10) std::abort();
-    self(self, at.path.t + 0.5 * (t1 - at.path.t), halvings + 1);
+    self(self, at.time() + 0.5 * (t1 - at.time()), halvings + 1);
     self(self, t1, halvings + 1);
   };
   for (auto _ : state) {

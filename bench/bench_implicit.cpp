@@ -76,12 +76,12 @@ struct Motion {
     if (report.accepted) return;
     ++divided;
     if (halvings == 10) std::abort();
-    advance(state.path.t + 0.5 * (t1 - state.path.t), halvings + 1);
+    advance(state.strips[0].path.t + 0.5 * (t1 - state.strips[0].path.t), halvings + 1);
     advance(t1, halvings + 1);
   }
 
   void advance_by(int steps) {
-    const double t0 = state.path.t;
+    const double t0 = state.strips[0].path.t;
     for (int i = 1; i <= steps; ++i) advance(t0 + i * kStep);
   }
 };
@@ -137,8 +137,8 @@ struct Parts {
   Parts(int segments, KineticEnergy kinetic) : motion(swing(), segments, kinetic, Integrator::generalised_alpha) {
     motion.advance_by(10);
     problem = motion.work.problem;
-    chain = motion.state.path.chain;
-    multipliers = motion.state.path.multipliers;
+    chain = motion.state.strips[0].path.chain;
+    multipliers = motion.state.strips[0].path.multipliers;
     kinematics();
     linearise();
     if (!sweep()) std::abort();

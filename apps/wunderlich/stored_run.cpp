@@ -19,13 +19,14 @@ constexpr std::array<const char*, 3> outcome_names{"converged", "not-converged",
 /// Calls `visit` on every number of a record, in a fixed order: the one description of how records are stored.
 template <typename Record, typename Visit>
 void visit_record(Record& record, Visit visit) {
-  auto& state = record.state;
-  visit(state.time);
-  for (auto& r : state.r) visit(r[0]), visit(r[1]), visit(r[2]);
-  for (auto& v : state.r_dot) visit(v[0]), visit(v[1]), visit(v[2]);
-  for (auto& q : state.q) visit(q.x()), visit(q.y()), visit(q.z()), visit(q.w());
-  for (auto& eta : state.eta) visit(eta);
-  for (auto& q : state.end_frame) visit(q.x()), visit(q.y()), visit(q.z()), visit(q.w());
+  for (auto& state : record.states) {
+    visit(state.time);
+    for (auto& r : state.r) visit(r[0]), visit(r[1]), visit(r[2]);
+    for (auto& v : state.r_dot) visit(v[0]), visit(v[1]), visit(v[2]);
+    for (auto& q : state.q) visit(q.x()), visit(q.y()), visit(q.z()), visit(q.w());
+    for (auto& eta : state.eta) visit(eta);
+    for (auto& q : state.end_frame) visit(q.x()), visit(q.y()), visit(q.z()), visit(q.w());
+  }
   auto& row = record.history;
   visit(row.time), visit(row.energy.elastic), visit(row.energy.kinetic);
   visit(row.energy.gravity), visit(row.energy.normalized);
@@ -50,18 +51,22 @@ std::vector<double> packed(const std::vector<scene::Record>& records) {
   return numbers;
 }
 
-scene::Record empty_record(int segments) {
-  const auto n = static_cast<std::size_t>(segments);
+scene::Record empty_record(const scene::Scene& scene) {
   scene::Record record;
-  record.state.r.assign(n + 1, Vec3::Zero());
-  record.state.r_dot.assign(n + 1, Vec3::Zero());
-  record.state.q.assign(n, Quat::Identity());
-  record.state.eta.assign(n + 1, 0.0);
+  for (const scene::Scene* strip : strips_of(scene)) {
+    const auto n = static_cast<std::size_t>(strip->ribbon.segments);
+    geometry::State& state = record.states.emplace_back();
+    state.r.assign(n + 1, Vec3::Zero());
+    state.r_dot.assign(n + 1, Vec3::Zero());
+    state.q.assign(n, Quat::Identity());
+    state.eta.assign(n + 1, 0.0);
+  }
   return record;
 }
 
-std::vector<scene::Record> unpacked(const std::vector<double>& numbers, int segments, const std::string& origin) {
-  scene::Record record = empty_record(segments);
+std::vector<scene::Record> unpacked(const std::vector<double>& numbers, const scene::Scene& scene,
+                                    const std::string& origin) {
+  scene::Record record = empty_record(scene);
   const std::size_t size = numbers_of(record);
   if (numbers.size() % size != 0) throw InputError(origin + ": the stored states do not fit the stored scene");
   std::vector<scene::Record> records;
@@ -90,17 +95,19 @@ const std::vector<double>& array_of(const io::Checkpoint& checkpoint, const std:
 
 /// The report's table of parameters.
 std::vector<io::Parameter> parameters_of(const scene::Scene& scene) {
-  const geometry::RibbonSpec& ribbon = scene.ribbon;
-  std::vector<io::Parameter> list{
-      {"length", fmt::format("{:g} m", ribbon.length)},
-      {"width", fmt::format("{:g} m", ribbon.width)},
-      {"length / width", fmt::format("{:g}", ribbon.length / ribbon.width)},
-      {"segments", fmt::format("{}", ribbon.segments)},
-      {"bending stiffness", fmt::format("{:g} N m", ribbon.bending_stiffness)},
-      {"area density", fmt::format("{:g} kg/m²", ribbon.area_density)},
-  };
-  if (ribbon.closure == geometry::Closure::loop) {
-    list.emplace_back("half twists", fmt::format("{}", ribbon.half_twists));
+  std::vector<io::Parameter> list;
+  for (const scene::Scene* strip : strips_of(scene)) {
+    const geometry::RibbonSpec& ribbon = strip->ribbon;
+    if (!strip->ribbon_name.empty()) list.emplace_back("ribbon", strip->ribbon_name);
+    list.emplace_back("length", fmt::format("{:g} m", ribbon.length));
+    list.emplace_back("width", fmt::format("{:g} m", ribbon.width));
+    list.emplace_back("length / width", fmt::format("{:g}", ribbon.length / ribbon.width));
+    list.emplace_back("segments", fmt::format("{}", ribbon.segments));
+    list.emplace_back("bending stiffness", fmt::format("{:g} N m", ribbon.bending_stiffness));
+    list.emplace_back("area density", fmt::format("{:g} kg/m²", ribbon.area_density));
+    if (ribbon.closure == geometry::Closure::loop) {
+      list.emplace_back("half twists", fmt::format("{}", ribbon.half_twists));
+    }
   }
   const Vec3& g = scene.surroundings.gravity;
   if (!g.isZero(0)) list.emplace_back("gravity", fmt::format("({:g}, {:g}, {:g}) m/s²", g.x(), g.y(), g.z()));
@@ -129,7 +136,7 @@ StoredRun from_checkpoint(const io::Checkpoint& checkpoint, const std::string& o
   for (std::size_t i = 0; i < outcome_names.size(); ++i) {
     if (outcome == outcome_names[i]) run.outcome = static_cast<scene::Outcome>(i);
   }
-  run.progress.records = unpacked(array_of(checkpoint, "records", origin), run.scene.ribbon.segments, origin);
+  run.progress.records = unpacked(array_of(checkpoint, "records", origin), run.scene, origin);
   run.progress.cursor = array_of(checkpoint, "cursor", origin);
   return run;
 }
@@ -146,12 +153,12 @@ io::RunOutput output_of(const StoredRun& run, const Summary& summary) {
   output.summary = summary;
   for (const scene::Record& record : run.progress.records) {
     output.history.push_back(record.history);
-    output.frames.push_back(frame_of(run.scene, record.state));
+    output.frames.push_back(frame_of(run.scene, record));
   }
   std::vector<double> times;
   for (const Frame& frame : output.frames) times.push_back(frame.time);
   output.bodies = bodies_of(run.scene, times);
-  output.pattern = pattern_of(run.scene, run.progress.records.back().state);
+  output.patterns = patterns_of(run.scene, run.progress.records.back());
   output.parameters = parameters_of(run.scene);
   output.scene_text = run.scene.resolved;
   output.checkpoint = to_checkpoint(run);

@@ -50,7 +50,7 @@ namespace {
 
 /// What steps that are accepted at once allocate after the first few. (A step that is not says why, in a string.)
 void expect_none(double dt, Motion& m) {
-  const double t = m.state.path.t;
+  const double t = m.state.strips[0].path.t;
   for (int i = 1; i <= 10; ++i) ASSERT_TRUE(move_to(t + dt * i, m)) << m.failure;
   int at_once = 0;
   long made = 0;

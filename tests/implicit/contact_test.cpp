@@ -32,7 +32,7 @@ TEST(Contact, ReactionIsTheWeight) {
   m.options.integrator = implicit::Integrator::euler;
   start(geometry::straight_chain(m.path.ribbon, along_x(0, 9.5e-4)), m);
   for (int i = 1; i <= 400; ++i) ASSERT_TRUE(move_to(5e-3 * i, m)) << m.failure;
-  const Vec3 push = push_of(m.path, m.state.path.t, m.state.path.chain);
+  const Vec3 push = push_of(m.path, m.state.strips[0].path.t, m.state.strips[0].path.chain);
   const double weight = 0.3 * 0.03 * 0.1 * kGravity;
   show("reaction over weight, less 1", std::abs(push.z() / weight - 1), 1e-6);
   EXPECT_NEAR(push.z() / weight, 1, 1e-6);
@@ -93,7 +93,7 @@ TEST(Contact, AStripSlipsOnASlopeAsCoulombSays) {
 TEST(Contact, NothingIsLeaptOver) {
   if (is_slow_build()) GTEST_SKIP() << "takes a minute there";
   Motion m = drop(1e-3, 20, {solid(contact::Capsule{1e-3, 1}, axis_y(0.15, -0.1, 0))}, along_x(0, 0), Vec3::Zero());
-  geometry::State shape = geometry::state_of(m.path.ribbon, m.state.path.chain, 0);
+  geometry::State shape = geometry::state_of(m.path.ribbon, m.state.strips[0].path.chain, 0);
   for (Vec3& v : shape.r_dot) v = Vec3(0, 0, -8);
   start(shape, Vec3::Zero(), m);
   const double least = lowest_clearance(0.04, 5e-3, m);

@@ -50,7 +50,7 @@ double clearance(const Motion& m, int fine) {
         const double f = static_cast<double>(i) / fine, v = ribbon.width * (static_cast<double>(k) / fine - 0.5);
         const Vec3 at = (1 - f) * corner(s, v) + f * corner(s + 1, v);
         for (const auto& obstacle : m.path.surroundings.obstacles) {
-          const Pose pose = constraint::pose_at(obstacle.motion, m.state.path.t);
+          const Pose pose = constraint::pose_at(obstacle.motion, m.state.strips[0].path.t);
           least = std::min(least, contact::distance(obstacle.shape, pose, at).value);
         }
       }
@@ -63,8 +63,8 @@ double lowest_clearance(double duration, double dt, Motion& m, int fine) {
   double least = clearance(m, fine);
   const long steps = std::lround(duration / dt);
   for (long i = 1; i <= steps; ++i) {
-    EXPECT_TRUE(move_to(static_cast<double>(i) * dt, m)) << m.failure << " at " << m.state.path.t;
-    if (m.state.path.t < (static_cast<double>(i) - 0.5) * dt) break;
+    EXPECT_TRUE(move_to(static_cast<double>(i) * dt, m)) << m.failure << " at " << m.state.strips[0].path.t;
+    if (m.state.strips[0].path.t < (static_cast<double>(i) - 0.5) * dt) break;
     least = std::min(least, clearance(m, fine));
   }
   return least;

@@ -187,7 +187,7 @@ TEST(Drops, Random) {
     for (int i = 1; i <= steps && moves; ++i) {
       moves = move_to(drop.dt * i, m);
       least = std::min(least, clearance(m.path.ribbon, implicit::shape_of(m.path, m.state),
-                                        m.path.surroundings.obstacles, m.state.path.t));
+                                        m.path.surroundings.obstacles, m.state.strips[0].path.t));
     }
     EXPECT_TRUE(is_finite(m));
     EXPECT_GT(least, m.path.surroundings.contact.thickness) << kinds(m.path.surroundings.obstacles);

@@ -16,7 +16,7 @@ namespace {
 /// How far the strip's last frame is from where a clamp asks for it, at the end time [lengths, rad].
 double end_error(const Motion& m, const constraint::Support& support) {
   const geometry::State shape = implicit::shape_of(m.path, m.state);
-  const auto pose = constraint::pose_at(support.motion, m.state.path.t);
+  const auto pose = constraint::pose_at(support.motion, m.state.strips[0].path.t);
   return std::max((shape.r.back() - pose.position).norm() / m.path.ribbon.length,
                   math::log_map(shape.end_frame[1] * pose.frame.conjugate()).norm());
 }
@@ -28,8 +28,8 @@ TEST(Exactness, OfATiltedSwing) {
   for (int i = 1; i <= 200; ++i) {
     ASSERT_TRUE(move_to(5e-3 * i, m)) << m.failure;
     look(m, worst);
-    lowest = std::min(lowest, m.state.points.x[50].z());
-    aside = std::max(aside, m.state.points.x[50].y());
+    lowest = std::min(lowest, m.state.strips[0].points.x[50].z());
+    aside = std::max(aside, m.state.strips[0].points.x[50].y());
   }
   expect_exact(worst);
   EXPECT_LT(lowest, -0.02);
@@ -86,8 +86,8 @@ TEST(Exactness, OfAStripWhoseClampTurnsAndLetsGo) {
   const solver::PathProblem before = m.path;
   m.path = solver::make_path(geometry::make_ribbon(spec), released, before.options);
   const double energy = total_energy(m);
-  implicit::change_supports(before, m.path, m.state);
-  implicit::find_accelerations(m.path, m.options, m.state, m.work);
+  implicit::change_supports(before, m.path, m.state.strips.front());
+  implicit::find_accelerations(implicit::Paths(&m.path, 1), m.options, m.state, m.work);
   const double lost = energy - total_energy(m);  // that of the clamp's own hinge
   EXPECT_GE(lost, -1e-12 * std::abs(energy));
   EXPECT_LE(lost, 0.2 * m.state.elastic);

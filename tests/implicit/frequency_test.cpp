@@ -20,13 +20,13 @@ double frequency(const std::vector<Vec3>& weight, double expected, int periods, 
     for (std::size_t i = 0; i < weight.size(); ++i) total += weight[i].dot(vectors[i]);
     return total;
   };
-  double before = sum(m.state.points.x), v_before = sum(m.state.points.v);
+  double before = sum(m.state.strips[0].points.x), v_before = sum(m.state.strips[0].points.v);
   double first = 0, last = 0;
   int zeros = 0;
   const int steps = static_cast<int>(std::lround(periods / (expected * dt)));
   for (int i = 1; i <= steps; ++i) {
     EXPECT_TRUE(move_to(dt * i, m)) << m.failure;
-    const double now = sum(m.state.points.x), v = sum(m.state.points.v);
+    const double now = sum(m.state.strips[0].points.x), v = sum(m.state.strips[0].points.v);
     if ((before < 0) != (now < 0)) {
       const bool nearer_now = std::abs(now) < std::abs(before);
       last = nearer_now ? dt * i - now / v : dt * (i - 1) - before / v_before;
@@ -128,15 +128,15 @@ double ring_frequency(double w, KineticEnergy kinetic, int segments) {
   std::vector<Vec3> weight;
   for (std::size_t i = 0; i <= n; ++i) {
     const double theta = 2 * kPi * static_cast<double>(i) / segments;
-    m.state.points.v[i] = -speed / k * std::sin(k * theta) * d2;
+    m.state.strips[0].points.v[i] = -speed / k * std::sin(k * theta) * d2;
     weight.push_back(m.path.ribbon.node_mass[i] * std::sin(k * theta) * d2);
   }
-  for (std::size_t s = 0; n + 1 + s < m.state.points.v.size(); ++s) {
+  for (std::size_t s = 0; n + 1 + s < m.state.strips[0].points.v.size(); ++s) {
     const double theta = 2 * kPi * (static_cast<double>(s) + 0.5) / segments;
     const Mat3 frame = shape.q[s].toRotationMatrix();
-    m.state.points.v[n + 1 + s] = speed * (std::cos(k * theta) * frame.col(2) - k * std::sin(k * theta) * frame.col(0));
+    m.state.strips[0].points.v[n + 1 + s] = speed * (std::cos(k * theta) * frame.col(2) - k * std::sin(k * theta) * frame.col(0));
   }
-  implicit::find_accelerations(m.path, m.options, m.state, m.work);
+  implicit::find_accelerations(implicit::Paths(&m.path, 1), m.options, m.state, m.work);
   const double expected = ring_theory(w, kinetic);
   return frequency(weight, expected, 4, 1 / (400 * expected), m);
 }

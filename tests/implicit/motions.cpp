@@ -30,7 +30,7 @@ bool move(double t1, int halvings, Motion& motion) {
   motion.failure = report.failure;
   if (halvings == kMostHalvings) return false;
   ++motion.halvings;
-  const double middle = 0.5 * (motion.state.path.t + t1);
+  const double middle = 0.5 * (motion.state.strips[0].path.t + t1);
   return move(middle, halvings + 1, motion) && move(t1, halvings + 1, motion);
 }
 
@@ -106,8 +106,8 @@ void start(const geometry::Chain& chain, Motion& motion) {
 bool move_to(double t1, Motion& motion) { return move(t1, 0, motion); }
 
 double kinetic(const Motion& motion) {
-  return implicit::kinetic_energy(motion.path.ribbon, motion.options.kinetic, motion.state.points,
-                                  motion.state.path.chain.eta);
+  return implicit::kinetic_energy(motion.path.ribbon, motion.options.kinetic, motion.state.strips[0].points,
+                                  motion.state.strips[0].path.chain.eta);
 }
 
 double total_energy(const Motion& motion) {

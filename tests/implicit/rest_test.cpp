@@ -55,7 +55,7 @@ Rest push_and_rest(const PathEnd& at, double speed, double drag, double dt, int 
   start(shape, Vec3::Zero(), m);
   Rest rest;
   const auto elastic = [&] {
-    return solver::elastic_energy(m.path.ribbon, m.path.options.model, m.state.path.chain) / at.energy - 1;
+    return solver::elastic_energy(m.path.ribbon, m.path.options.model, m.state.strips[0].path.chain) / at.energy - 1;
   };
   for (int i = 1; i <= steps; ++i) {
     EXPECT_TRUE(move_to(shape.time + dt * i, m)) << m.failure;
@@ -64,7 +64,7 @@ Rest push_and_rest(const PathEnd& at, double speed, double drag, double dt, int 
   rest.dynamic = elastic();
   std::printf("  %d steps, %d iterations, %d halvings, %d repeats; kinetic over elastic %.3g\n", m.steps, m.iterations,
               m.halvings, m.repeats, kinetic(m) / at.energy);
-  solver::PathState polish = m.state.path;
+  solver::PathState polish = m.state.strips[0].path;
   polish.phase = solver::Phase::settle;
   polish.t = 0;
   solver::NewtonWorkspace work;

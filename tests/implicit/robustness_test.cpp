@@ -177,8 +177,8 @@ void soak(unsigned seed, int steps) {
     held.supports = {first};
     const solver::PathProblem before = m.path;
     m.path = solver::make_path(geometry::make_ribbon(spec), held, before.options);
-    implicit::change_supports(before, m.path, m.state);
-    implicit::find_accelerations(m.path, m.options, m.state, m.work);
+    implicit::change_supports(before, m.path, m.state.strips.front());
+    implicit::find_accelerations(implicit::Paths(&m.path, 1), m.options, m.state, m.work);
   }
   std::printf("  seed %u: %d steps %d iterations %d halvings (to 1/%d) %d repeats, |x| to %.4f, %s\n", seed, m.steps,
               m.iterations, m.halvings, 1 << m.deepest, m.repeats, worst.ruling, fine ? "done" : m.failure.c_str());

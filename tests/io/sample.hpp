@@ -42,7 +42,7 @@ inline RunOutput sample_run(int segments = 12) {
     row.iterations = 3 + k;
     out.history.push_back(row);
   }
-  out.pattern = geometry::flat_pattern(ribbon, state);
+  out.patterns = {geometry::flat_pattern(ribbon, state)};
   out.title = "A strip that coils </script> up";
   out.summary.scene = "coil";
   out.summary.method = "equilibrium";

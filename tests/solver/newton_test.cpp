@@ -136,7 +136,8 @@ void linearise_all(const Ribbon& ribbon, const ChainProblem& problem, const Chai
   solver::Touching touching;
   solver::SelfSearch search;
   find_points(ribbon, problem.contact, chain, k, touching.points);
-  if (problem.self.active()) find_pairs(ribbon, problem.self, chain, k, search, touching.self);
+  const solver::StripPlace place{ribbon, chain, k};
+  if (problem.self.active()) find_pairs({&place, 1}, problem.self, search, touching.self);
   linearise(ribbon, problem, chain, k, multipliers, touching, system);
 }
 

@@ -63,6 +63,10 @@ Chain moved(const Chain& chain, const VectorXd& x) {
   return out;
 }
 
+std::vector<solver::StripPlace> alone(const geometry::Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
+  return {{ribbon, chain, k}};
+}
+
 struct Linear {
   double value;
   VectorXd gradient, step;
@@ -74,7 +78,7 @@ Linear linear(const Coil& coil, const Chain& chain) {
   geometry::forward_kinematics(coil.ribbon, coil.chain, start);
   solver::Touching touching;
   solver::SelfSearch search;
-  find_pairs(coil.ribbon, coil.problem.self, chain, k, search, touching.self);
+  find_pairs(alone(coil.ribbon, chain, k), coil.problem.self, search, touching.self);
   EXPECT_GT(touching.self.pairs.size(), 20u);
   math::ChainSystem system;
   math::ChainWorkspace work;
@@ -82,7 +86,7 @@ Linear linear(const Coil& coil, const Chain& chain) {
   linearise(coil.ribbon, coil.problem, chain, k, {}, touching, system);
   EXPECT_TRUE(chain_step(system, work, step));
   Linear out{objective(coil.ribbon, coil.problem, chain, k, start).total() +
-                 self_energy(coil.ribbon, coil.problem.self, touching.self),
+                 self_energy(coil.problem.self, touching.self),
              VectorXd(2 * coil.ribbon.node_count()), VectorXd(2 * coil.ribbon.node_count())};
   for (std::size_t i = 0; i < work.gradient.size(); ++i) {
     out.gradient.segment<2>(2 * static_cast<Index>(i)) = work.gradient[i];
@@ -129,11 +133,11 @@ TEST(SelfContact, NothingIsLeaptOver) {
   solver::SelfContacts from, to;
   Kinematics k;
   geometry::forward_kinematics(ribbon, open, k);
-  find_pairs(ribbon, self, open, k, search, from);
+  find_pairs(alone(ribbon, open, k), self, search, from);
   EXPECT_TRUE(from.pairs.empty());
-  EXPECT_TRUE(travel(ribbon, self, from, open, k, search, to));
+  EXPECT_TRUE(travel(alone(ribbon, open, k), self, from, search, to));
   geometry::forward_kinematics(ribbon, closed, k);
-  EXPECT_FALSE(travel(ribbon, self, from, closed, k, search, to));
+  EXPECT_FALSE(travel(alone(ribbon, closed, k), self, from, search, to));
 }
 
 /// Do an edge and a triangle meet? Apart from the solver's test: by where the line meets the plane.

@@ -20,6 +20,7 @@ struct CenterlineSample {
   double tau = 0;          ///< torsion [1/m]
   double eta = 0;          ///< ruling slope, ruling = d2 + eta d3
   double eta_prime = 0;    ///< d eta / du [1/m]
+  int ribbon = 0;          ///< which strip it is of
 };
 
 /// A named scalar per mesh point.
@@ -40,7 +41,7 @@ struct Mesh {
 /// One instant: the centerline for tables and plots, the surface for pictures.
 struct Frame {
   double time = 0;                           ///< [s]; the load parameter of an equilibrium path
-  std::vector<CenterlineSample> centerline;  ///< segments + 1 samples
+  std::vector<CenterlineSample> centerline;  ///< segments + 1 samples of each strip
   Mesh surface;                              ///< same connectivity in every frame of a run
 };
 

@@ -24,12 +24,15 @@ void add_row(std::string& out, std::initializer_list<double> values, const char*
 }  // namespace
 
 std::string centerline_csv(const std::vector<CenterlineSample>& centerline) {
-  std::string out = "u,x,y,z,d1x,d1y,d1z,d2x,d2y,d2z,d3x,d3y,d3z,kappa,tau,eta,eta_prime\n";
+  std::string out = "u,x,y,z,d1x,d1y,d1z,d2x,d2y,d2z,d3x,d3y,d3z,kappa,tau,eta,eta_prime";
+  const bool several = !centerline.empty() && centerline.back().ribbon > 0;
+  out += several ? ",ribbon\n" : "\n";
   for (const CenterlineSample& p : centerline) {
     add_row(out,
             {p.u, p.r.x(), p.r.y(), p.r.z(), p.d1.x(), p.d1.y(), p.d1.z(), p.d2.x(), p.d2.y(), p.d2.z(), p.d3.x(),
              p.d3.y(), p.d3.z(), p.kappa, p.tau, p.eta, p.eta_prime},
             "centerline.csv");
+    if (several) out.insert(out.size() - 1, fmt::format(",{}", p.ribbon));
   }
   return out;
 }

@@ -30,17 +30,17 @@ struct Cube {
   }
 };
 
-std::array<Vec3, 2> ruling_ends(const CenterlineSample& sample, double width) {
-  const Vec3 half = 0.5 * width * (sample.d2 + sample.eta * sample.d3);
+std::array<Vec3, 2> ruling_ends(const CenterlineSample& sample, const std::vector<FlatPattern>& strips) {
+  const Vec3 half = 0.5 * strips[static_cast<std::size_t>(sample.ribbon)].width * (sample.d2 + sample.eta * sample.d3);
   return {sample.r - half, sample.r + half};
 }
 
-Cube bounding_cube(const std::vector<const Frame*>& frames, double width) {
+Cube bounding_cube(const std::vector<const Frame*>& frames, const std::vector<FlatPattern>& strips) {
   Cube cube;
   for (const Frame* frame : frames) {
     for (const Vec3& p : frame->surface.points) cube.include(p);
     for (const CenterlineSample& sample : frame->centerline) {
-      for (const Vec3& p : ruling_ends(sample, width)) cube.include(p);
+      for (const Vec3& p : ruling_ends(sample, strips)) cube.include(p);
     }
   }
   return cube;
@@ -68,12 +68,12 @@ std::string column(const std::vector<CenterlineSample>& centerline, Get get) {
   return base64(out);
 }
 
-Json frame_json(const Frame& frame, const Cube& cube, double width) {
+Json frame_json(const Frame& frame, const Cube& cube, const std::vector<FlatPattern>& strips) {
   std::string points, normals, rulings;
   for (const Vec3& p : frame.surface.points) append_point(points, cube, p);
   for (const Vec3& n : frame.surface.normals) append_normal(normals, n);
   for (const CenterlineSample& sample : frame.centerline) {
-    for (const Vec3& p : ruling_ends(sample, width)) append_point(rulings, cube, p);
+    for (const Vec3& p : ruling_ends(sample, strips)) append_point(rulings, cube, p);
   }
   const auto& line = frame.centerline;
   return {{"time", frame.time},
@@ -93,12 +93,26 @@ std::string packed_triangles(const Mesh& mesh) {
   return base64(triangles);
 }
 
-Json mesh_json(const Mesh& mesh) {
+/// Where each strip begins on the common axis: one behind the other.
+std::vector<double> beginnings(const std::vector<FlatPattern>& strips) {
+  std::vector<double> out{0};
+  for (const FlatPattern& strip : strips) out.push_back(out.back() + strip.length);
+  return out;
+}
+
+/// u on the common axis, and v.
+Json mesh_json(const Mesh& mesh, const std::vector<double>& begin) {
   Json out = {{"triangles", packed_triangles(mesh)}};
+  const auto ribbon = std::find_if(mesh.fields.begin(), mesh.fields.end(),
+                                   [](const PointField& field) { return field.name == "ribbon"; });
   for (const PointField& field : mesh.fields) {
     if (field.name != "u" && field.name != "v") continue;
     std::string values;
-    for (const double value : field.values) append(values, static_cast<float>(value));
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
+      const bool moved = field.name == "u" && ribbon != mesh.fields.end();
+      const double before = moved ? begin[static_cast<std::size_t>(ribbon->values[i])] : 0;
+      append(values, static_cast<float>(field.values[i] + before));
+    }
     out[field.name] = base64(values);
   }
   return out;
@@ -157,25 +171,28 @@ std::vector<const Frame*> chosen(const std::vector<Frame>& frames) {
 
 Json report_json(const RunOutput& output) {
   const std::vector<const Frame*> frames = chosen(output.frames);
-  const double width = output.pattern.width;
-  const Cube cube = bounding_cube(frames, width);
+  const std::vector<FlatPattern>& strips = output.patterns;
+  const std::vector<double> begin = beginnings(strips);
+  const Cube cube = bounding_cube(frames, strips);
   Json data;
   data["title"] = output.title;
   data["summary"] = Json::parse(summary_json(output.summary));
   data["parameters"] = output.parameters;
   data["scene"] = output.scene_text;
-  data["length"] = output.pattern.length;
-  data["width"] = width;
+  data["length"] = begin.back();
+  data["width"] = strips.front().width;
   data["history"] = history_json(output.history);
   data["recorded_frames"] = output.frames.size();
   data["low"] = {cube.low.x(), cube.low.y(), cube.low.z()};
   data["scale"] = cube.size() / largest_count;
-  data["mesh"] = mesh_json(frames.front()->surface);
+  data["mesh"] = mesh_json(frames.front()->surface, begin);
   data["bodies"] = Json::array();
   for (const Body& body : output.bodies) data["bodies"].push_back(body_json(body, output.frames, frames));
-  data["u"] = column(frames.front()->centerline, [](const CenterlineSample& s) { return s.u; });
+  data["u"] = column(frames.front()->centerline, [&](const CenterlineSample& s) {
+    return begin[static_cast<std::size_t>(s.ribbon)] + s.u;
+  });
   data["frames"] = Json::array();
-  for (const Frame* frame : frames) data["frames"].push_back(frame_json(*frame, cube, width));
+  for (const Frame* frame : frames) data["frames"].push_back(frame_json(*frame, cube, strips));
   return data;
 }
 

@@ -123,6 +123,17 @@ std::vector<RenderedFile> render_vtp(const RunOutput& output, const std::string&
   return files;
 }
 
+/// One a strip; the first one's comes last.
+std::vector<RenderedFile> render_patterns(const RunOutput& output, const std::string& stem) {
+  std::vector<RenderedFile> files;
+  for (std::size_t i = output.patterns.size(); i-- > 0;) {
+    const std::string name = i == 0 ? stem + ".svg" : fmt::format("{}-{}.svg", stem, i + 1);
+    const std::string title = i == 0 ? output.summary.scene : fmt::format("{}, ribbon {}", output.summary.scene, i + 1);
+    files.emplace_back(name, pattern_svg(output.patterns[i], title));
+  }
+  return files;
+}
+
 }  // namespace
 
 bool is_run_folder(const fs::path& folder) {
@@ -161,7 +172,7 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
     case Format::obj:
       return {{ribbon + ".obj", obj(final_surface, "ribbon")}};
     case Format::svg:
-      return {{(stem.empty() ? "pattern" : stem) + ".svg", pattern_svg(output.pattern, output.summary.scene)}};
+      return render_patterns(output, stem.empty() ? "pattern" : stem);
     case Format::html:
       return {{(stem.empty() ? "report" : stem) + ".html", report_page(output)}};
   }

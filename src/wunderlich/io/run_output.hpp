@@ -21,7 +21,7 @@ struct RunOutput {
   std::vector<HistoryRow> history;
   std::vector<Frame> frames;  ///< at least one; the last is the final state
   std::vector<Body> bodies;   ///< obstacles
-  FlatPattern pattern;        ///< of the final state
+  std::vector<FlatPattern> patterns;  ///< of the final state, one a strip; at least one
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides
   Checkpoint checkpoint;

@@ -3,44 +3,62 @@
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <utility>
-
-#include "wunderlich/math/rotation.hpp"
 
 namespace wunderlich::math {
 
 namespace {
 
-Vec3 vec(const Four& v) { return first_three(v); }
+using Parts = std::span<const ChainPart>;
+using Couplings = std::vector<ChainCoupling>;
+
+int node_of(const ChainSystem& system, int point) { return system.points[static_cast<std::size_t>(point)].node; }
 
 /// Everything that decides which entries there are, and in which order they come.
-void describe(const ChainSystem& system, std::vector<int>& key) {
+void describe(Parts parts, const Couplings& between, std::vector<int>& key) {
   key.clear();
-  key.push_back(static_cast<int>(system.links.size()));
-  for (const bool fixed : system.base_fixed) key.push_back(fixed ? 1 : 0);
-  key.push_back(static_cast<int>(system.turns.size()));
-  const auto nodes = [&](const auto& terms) {
-    key.push_back(static_cast<int>(terms.size()));
-    for (const auto& term : terms) key.push_back(term.node);
-  };
-  nodes(system.rows), nodes(system.pose_terms), nodes(system.surfaces), nodes(system.points);
-  for (const PointCoupling& coupling : system.couplings) key.push_back(coupling.a), key.push_back(coupling.b);
+  const auto note = [&](const PointCoupling& coupling) { key.push_back(coupling.a), key.push_back(coupling.b); };
+  for (const ChainPart& part : parts) {
+    const ChainSystem& system = *part.system;
+    key.push_back(static_cast<int>(system.links.size()));
+    for (const bool fixed : system.base_fixed) key.push_back(fixed ? 1 : 0);
+    key.push_back(static_cast<int>(system.turns.size()));
+    const auto nodes = [&](const auto& terms) {
+      key.push_back(static_cast<int>(terms.size()));
+      for (const auto& term : terms) key.push_back(term.node);
+    };
+    nodes(system.rows), nodes(system.pose_terms), nodes(system.surfaces), nodes(system.points);
+    key.push_back(static_cast<int>(system.couplings.size()));
+    for (const PointCoupling& coupling : system.couplings) note(coupling);
+  }
+  for (const ChainCoupling& coupling : between) {
+    key.push_back(coupling.chain[0]), key.push_back(coupling.chain[1]);
+    note(coupling.points);
+  }
 }
 
-/// Order in which nodes are eliminated: of least fill on the graph of nodes.
-std::vector<int> elimination_order(const ChainSystem& system) {
-  const int count = static_cast<int>(system.links.size());
+/// Order in which the nodes of all chains, numbered through, are eliminated: of least fill on their graph.
+std::vector<int> elimination_order(Parts parts, const Couplings& between) {
   std::vector<Eigen::Triplet<double>> edges;
-  for (int i = 0; i < count; ++i) {
-    edges.emplace_back(i, i, 1.0);
-    if (i > 0) edges.emplace_back(i, i - 1, 1.0), edges.emplace_back(i - 1, i, 1.0);
+  const auto join = [&](int a, int b) { edges.emplace_back(a, b, 1.0), edges.emplace_back(b, a, 1.0); };
+  std::vector<int> first;
+  int count = 0;
+  for (const ChainPart& part : parts) {
+    const auto links = static_cast<int>(part.system->links.size());
+    for (int i = 0; i < links; ++i) {
+      edges.emplace_back(count + i, count + i, 1.0);
+      if (i > 0) join(count + i, count + i - 1);
+    }
+    for (const PointCoupling& coupling : part.system->couplings) {
+      join(count + node_of(*part.system, coupling.a), count + node_of(*part.system, coupling.b));
+    }
+    first.push_back(count);
+    count += links;
   }
-  for (const PointCoupling& coupling : system.couplings) {
-    const int a = system.points[static_cast<std::size_t>(coupling.a)].node;
-    const int b = system.points[static_cast<std::size_t>(coupling.b)].node;
-    edges.emplace_back(a, b, 1.0), edges.emplace_back(b, a, 1.0);
+  for (const auto& [chain, points] : between) {
+    const auto a = static_cast<std::size_t>(chain[0]), b = static_cast<std::size_t>(chain[1]);
+    join(first[a] + node_of(*parts[a].system, points.a), first[b] + node_of(*parts[b].system, points.b));
   }
   Eigen::SparseMatrix<double> graph(count, count);
   graph.setFromTriplets(edges.begin(), edges.end());
@@ -50,241 +68,39 @@ std::vector<int> elimination_order(const ChainSystem& system) {
 }
 
 /// Numbers the unknowns: node by node, poses and coordinates before the multipliers that need them; rows last.
-void place_unknowns(const ChainSystem& system, SparseWorkspace& work) {
-  work.places.assign(system.links.size(), {});
+void place_unknowns(Parts parts, const Couplings& between, SparseWorkspace& work) {
   int next = 0;
   const auto take = [&](int size) { return std::exchange(next, next + size); };
-  for (const int node : elimination_order(system)) {
-    NodePlaces& at = work.places[static_cast<std::size_t>(node)];
+  std::vector<std::pair<std::size_t, int>> nodes;  // chain and node by number
+  work.chains.resize(parts.size());
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    const std::size_t count = parts[c].system->links.size();
+    work.chains[c].places.assign(count, {});
+    for (std::size_t i = 0; i < count; ++i) nodes.emplace_back(c, static_cast<int>(i));
+  }
+  for (const int number : elimination_order(parts, between)) {
+    const auto [c, node] = nodes[static_cast<std::size_t>(number)];
+    NodePlaces& at = work.chains[c].places[static_cast<std::size_t>(node)];
     at.v = take(3);
-    if (node == 0) work.theta_base = take(3);
+    if (node == 0) work.chains[c].theta_base = take(3);
     at.theta = take(3);
     at.u = take(2);
     at.turn = take(3);
     if (node > 0) at.move = take(3);
   }
-  work.first_row = take(static_cast<int>(system.rows.size()));
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    work.chains[c].first_row = take(static_cast<int>(parts[c].system->rows.size()));
+  }
   work.size = next;
   work.fixed.assign(static_cast<std::size_t>(next), 0);
-  for (int c = 0; c < 3; ++c) {
-    work.fixed[static_cast<std::size_t>(work.places[0].v + c)] = system.base_fixed[static_cast<std::size_t>(c)];
-    work.fixed[static_cast<std::size_t>(work.theta_base + c)] = system.base_fixed[static_cast<std::size_t>(3 + c)];
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const auto& held = parts[k].system->base_fixed;
+    for (int c = 0; c < 3; ++c) {
+      work.fixed[static_cast<std::size_t>(work.chains[k].places[0].v + c)] = held[static_cast<std::size_t>(c)];
+      work.fixed[static_cast<std::size_t>(work.chains[k].theta_base + c)] = held[static_cast<std::size_t>(3 + c)];
+    }
   }
 }
-
-/// Fills matrix and right-hand side, entry by entry in an order that the key decides.
-class Assembly {
- public:
-  Assembly(const ChainSystem& system, SparseWorkspace& work) : system_(system), work_(work) {
-    double rigidity = 0, length = 0;
-    for (const ChainLink& link : system.links) {
-      rigidity += std::abs(link.hess_bb(0, 0));
-      length += vec(link.span).squaredNorm();
-    }
-    const auto count = static_cast<double>(system.links.size());
-    length = std::sqrt(length / count);
-    // Of the size of a joint's own stiffness; it changes nothing but the pivots.
-    held_turn_ = rigidity / (count * length * length);
-    held_move_ = held_turn_ / (length * length);
-  }
-
-  void run() {
-    work_.right.setZero(work_.size);
-    for (int i = 0; i < static_cast<int>(system_.links.size()); ++i) add_node(i);
-    for (const PoseTerm& term : system_.pose_terms) add_pose_term(term);
-    for (const SurfaceTerm& term : system_.surfaces) add_surface(term);
-    for (const SurfacePoint& point : system_.points) add_point(point);
-    for (const PointCoupling& coupling : system_.couplings) add_coupling(coupling);
-    for (std::size_t k = 0; k < system_.rows.size(); ++k) add_row(system_.rows[k], static_cast<int>(k));
-    for (int c = 0; c < 3; ++c) {
-      add(work_.places[0].v + c, work_.places[0].v + c, system_.base_shift[0]);
-      add(work_.theta_base + c, work_.theta_base + c, system_.base_shift[1]);
-    }
-    for (int k = 0; k < work_.size; ++k) {
-      const bool fixed = work_.fixed[static_cast<std::size_t>(k)] != 0;
-      work_.matrix.add(k, k, fixed ? 1 : 0);
-      if (fixed) work_.right[k] = 0;
-    }
-  }
-
- private:
-  void add(int row, int column, double value) {
-    const bool fixed = work_.fixed[static_cast<std::size_t>(row)] || work_.fixed[static_cast<std::size_t>(column)];
-    work_.matrix.add(row, column, fixed ? 0 : value);
-  }
-
-  /// A block; on the diagonal its lower triangle.
-  template <class Block>
-  void add_block(int row, int column, const Block& block) {
-    for (int c = 0; c < block.cols(); ++c) {
-      for (int r = row == column ? c : 0; r < block.rows(); ++r) add(row + r, column + c, block(r, c));
-    }
-  }
-
-  template <class Part>
-  void load(int row, const Part& gradient) {
-    if (system_.only_load) return;
-    for (int r = 0; r < gradient.size(); ++r) work_.right[row + r] -= gradient[r];
-  }
-
-  const NodePlaces& places(int node) const { return work_.places[static_cast<std::size_t>(node)]; }
-
-  /// A constraint of three rows: sum of blocks times unknowns = 0. Its square times `weight` is added as well: nothing
-  /// where it holds, but the unknowns have pivots before their multipliers come.
-  template <std::size_t N>
-  void add_constraint(int multiplier, double weight, const std::array<int, N>& at,
-                      const std::array<Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>, N>& part) {
-    for (std::size_t a = 0; a < N; ++a) {
-      add_block(multiplier, at[a], part[a]);
-      for (std::size_t b = a; b < N; ++b) add_block(at[b], at[a], weight * part[b].transpose() * part[a]);
-    }
-  }
-
-  void add_joint(int i) {
-    const auto k = static_cast<std::size_t>(i);
-    const ChainLink& link = system_.links[k];
-    const NodePlaces& at = places(i);
-    const NodeWrench& wrench = work_.wrench[k];
-    const Vec3 b0 = vec(link.axis[0]), b1 = vec(link.axis[1]);
-    const int before = i > 0 ? places(i - 1).theta : work_.theta_base;
-    Mat2 own = Mat2::Zero();
-    Eigen::Matrix<double, 3, 2> turned = Eigen::Matrix<double, 3, 2>::Zero();
-    if (i > 0) own += system_.links[k - 1].hess_bb;
-    if (k + 1 < system_.links.size()) own += link.hess_aa;
-    if (system_.geometric) {
-      own(0, 1) += wrench.torque.dot(vec(link.axis_01));
-      own(1, 1) += wrench.torque.dot(vec(link.axis_11));
-      turned << 0.5 * b0.cross(wrench.torque), 0.5 * b1.cross(wrench.torque);
-    }
-    own(0, 1) -= link.chart * (wrench.gradient[1] - (system_.geometric ? 0 : wrench.pull));
-    own(1, 0) = own(0, 1);
-    own.diagonal() += Vec2(system_.shift[0], system_.shift[1]);
-    add_block(at.u, at.u, own);
-    add_block(before, at.u, turned);
-    if (i > 0) add_block(at.u, places(i - 1).u, system_.links[k - 1].hess_ab.transpose().eval());
-    Eigen::Matrix<double, 3, 2> axes;
-    axes << -b0, -b1;
-    add_constraint<3>(at.turn, held_turn_, {at.theta, before, at.u}, {Mat3::Identity(), -Mat3::Identity(), axes});
-    Vec2 gradient = Vec2::Zero();
-    if (i > 0) gradient += system_.links[k - 1].grad_b;
-    if (k + 1 < system_.links.size()) gradient += link.grad_a;
-    load(at.u, gradient);
-    if (system_.only_load) work_.right.segment<2>(at.u) = -(*system_.only_load)[k];
-  }
-
-  void add_node(int i) {
-    const auto k = static_cast<std::size_t>(i);
-    const ChainLink& link = system_.links[k];
-    const NodePlaces& at = places(i);
-    add_joint(i);
-    add_block(at.v, at.v, Mat3(link.stiffness * Mat3::Identity()));
-    load(at.v, vec(link.force));
-    Mat3 turn = Mat3::Zero();
-    if (k < system_.turns.size()) {
-      const TurnTerm& term = system_.turns[k];
-      for (int r = 0; r < 3; ++r) {
-        turn.row(r) = vec(term.hessian[r]).transpose();
-        if (system_.geometric) turn.row(r) += vec(term.geometric[r]).transpose();
-      }
-      load(at.theta, Vec3(term.hessian[0][3], term.hessian[1][3], term.hessian[2][3]));
-    }
-    if (k + 1 < system_.links.size()) {
-      const Vec3 span = vec(link.span), force = work_.wrench[k + 1].force;
-      if (system_.geometric) {
-        turn += 0.5 * (span * force.transpose() + force * span.transpose()) - span.dot(force) * Mat3::Identity();
-      }
-      const NodePlaces& next = places(i + 1);
-      add_constraint<3>(next.move, held_move_, {next.v, at.v, at.theta},
-                        {Mat3::Identity(), -Mat3::Identity(), skew(span)});
-    }
-    add_block(at.theta, at.theta, turn);
-  }
-
-  void add_pose_term(const PoseTerm& term) {
-    const int v = places(std::max(term.node, 0)).v;
-    const int theta = term.node < 0 ? work_.theta_base : places(term.node).theta;
-    add_block(v, v, term.hessian.topLeftCorner<3, 3>());
-    add_block(theta, v, term.hessian.bottomLeftCorner<3, 3>());
-    Mat3 turn = term.hessian.bottomRightCorner<3, 3>();
-    if (system_.geometric) turn += term.geometric;
-    add_block(theta, theta, turn);
-    load(v, term.gradient.head<3>());
-    load(theta, term.gradient.tail<3>());
-  }
-
-  void add_surface(const SurfaceTerm& term) {
-    Mat8 hessian = term.hessian;
-    if (system_.geometric) hessian += term.geometric;
-    const NodePlaces &near = places(term.node), &far = places(term.node + 1);
-    const int at[8] = {far.v, far.v + 1, far.v + 2, near.theta, near.theta + 1, near.theta + 2, near.u + 1, far.u + 1};
-    for (int c = 0; c < 8; ++c) {
-      for (int r = c; r < 8; ++r) add(at[r], at[c], hessian(r, c));
-      load(at[c], Eigen::Matrix<double, 1, 1>(term.gradient[c]));
-    }
-  }
-
-  /// Where a point's seven unknowns are, and how it moves with them.
-  struct Lever {
-    int at[7];
-    Eigen::Matrix<double, 3, 7> move;
-  };
-
-  Lever lever(const SurfacePoint& point) const {
-    const NodePlaces& p = places(point.node);
-    Lever lever{{p.v, p.v + 1, p.v + 2, p.theta, p.theta + 1, p.theta + 2, p.u + 1}, {}};
-    lever.move << Mat3::Identity(), -skew(point.arm), point.slant;
-    return lever;
-  }
-
-  /// The gradient, and what the force on a point adds because it moves on a curve.
-  void add_point(const SurfacePoint& point) {
-    const Lever lever = this->lever(point);
-    const Vec3& force = point.gradient;
-    const Eigen::Matrix<double, 7, 1> gradient = lever.move.transpose() * force;
-    for (int c = 0; c < 7; ++c) load(lever.at[c], Eigen::Matrix<double, 1, 1>(gradient[c]));
-    const double share = system_.geometric ? 1 : 0;
-    const Mat3 turn = share * (0.5 * (force * point.arm.transpose() + point.arm * force.transpose()) -
-                               force.dot(point.arm) * Mat3::Identity());
-    add_block(lever.at[3], lever.at[3], turn);
-    const Vec3 slant = share * point.slant.cross(force);
-    for (int c = 0; c < 3; ++c) add(lever.at[3 + c], lever.at[6], slant[c]);
-  }
-
-  void add_coupling(const PointCoupling& coupling) {
-    const Lever a = lever(system_.points[static_cast<std::size_t>(coupling.a)]);
-    const Lever b = lever(system_.points[static_cast<std::size_t>(coupling.b)]);
-    Mat3 between = coupling.hessian;
-    if (system_.geometric) between += coupling.geometric;
-    const Eigen::Matrix<double, 7, 7> block = a.move.transpose() * between * b.move;
-    const bool same = coupling.a == coupling.b;
-    for (int c = 0; c < 7; ++c) {
-      for (int r = same ? c : 0; r < 7; ++r) {
-        // Two points of one node share unknowns: there both halves of the symmetric whole meet.
-        const double twice = !same && a.at[r] == b.at[c] ? 2 : 1;
-        add(a.at[r], b.at[c], twice * block(r, c));
-      }
-    }
-  }
-
-  void add_row(const ChainRow& row, int k) {
-    const int at = work_.first_row + k;
-    const NodePlaces& node = places(std::max(row.node, 0));
-    const auto add_part = [&](int column, const auto& part) {
-      for (int c = 0; c < part.size(); ++c) add(at, column + c, part[c]);
-    };
-    add_part(node.v, row.v);
-    add_part(row.node < 0 ? work_.theta_base : node.theta, row.theta);
-    add_part(node.u, row.u);
-    add_part(places(0).v, row.base_v);
-    add_part(work_.theta_base, row.base_theta);
-    add_part(places(0).u, row.first_u);
-    work_.right[at] = -row.residual;
-  }
-
-  const ChainSystem& system_;
-  SparseWorkspace& work_;
-  double held_turn_ = 0, held_move_ = 0;
-};
 
 /// Solves, and improves the solution where it needs it: pivots are taken as they come.
 bool solve(SparseWorkspace& work) {
@@ -303,35 +119,54 @@ bool solve(SparseWorkspace& work) {
   }
 }
 
-void read_step(const ChainSystem& system, const SparseWorkspace& work, ChainStep& step) {
-  const Eigen::VectorXd& x = work.solution;
-  step.base << x.segment<3>(work.places[0].v), x.segment<3>(work.theta_base);
+void read_step(const ChainSystem& system, const ChainUnknowns& chain, const Eigen::VectorXd& x, ChainStep& step) {
+  step.base << x.segment<3>(chain.places[0].v), x.segment<3>(chain.theta_base);
+  step.u.resize(system.links.size());
+  step.v.resize(system.links.size());
   for (std::size_t i = 0; i < system.links.size(); ++i) {
-    step.v[i] = x.segment<3>(work.places[i].v);
-    step.u[i] = x.segment<2>(work.places[i].u);
+    step.v[i] = x.segment<3>(chain.places[i].v);
+    step.u[i] = x.segment<2>(chain.places[i].u);
   }
   step.multiplier.resize(system.rows.size());
   for (std::size_t k = 0; k < system.rows.size(); ++k) {
-    step.multiplier[k] = x[work.first_row + static_cast<Eigen::Index>(k)];
+    step.multiplier[k] = x[chain.first_row + static_cast<Eigen::Index>(k)];
   }
+}
+
+/// Each chain's forces, and the exact gradient.
+void find_gradients(Parts parts, SparseWorkspace& work) {
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    std::vector<NodeWrench>& wrenches = work.chains[c].wrench;
+    find_wrenches(*parts[c].system, wrenches, parts[c].work->base_gradient);
+    std::vector<Vec2>& gradient = parts[c].work->gradient;
+    gradient.resize(wrenches.size());
+    for (std::size_t i = 0; i < wrenches.size(); ++i) gradient[i] = wrenches[i].gradient;
+  }
+}
+
+/// Negative pivots that are modes: one belongs to each multiplier.
+int count_negative(Parts parts, const Eigen::VectorXd& pivots) {
+  auto count = static_cast<int>((pivots.array() < 0).count());
+  for (const ChainPart& part : parts) {
+    const std::size_t links = part.system->links.size();
+    count -= static_cast<int>(3 * links + 3 * (links - 1) + part.system->rows.size());
+  }
+  return count;
 }
 
 }  // namespace
 
-bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& workspace, ChainStep& step) {
-  assert(system.probe_count() == 0);
-  if (!workspace.sparse) workspace.sparse = std::make_shared<SparseWorkspace>();
-  SparseWorkspace& work = *workspace.sparse;
+bool sparse_chain_steps(Parts parts, const Couplings& between) {
+  auto& shared = parts.front().work->sparse;
+  if (!shared) shared = std::make_shared<SparseWorkspace>();
+  SparseWorkspace& work = *shared;
   const std::vector<int> last = work.key;
-  describe(system, work.key);
+  describe(parts, between, work.key);
   const bool known = work.key == last;
-  if (!known) place_unknowns(system, work);
-  find_wrenches(system, work, workspace.base_gradient);
-  const std::size_t count = system.links.size();
-  workspace.gradient.resize(count);
-  for (std::size_t i = 0; i < count; ++i) workspace.gradient[i] = work.wrench[i].gradient;
+  if (!known) place_unknowns(parts, between, work);
+  find_gradients(parts, work);
   known ? work.matrix.repeat() : work.matrix.note(work.size);
-  Assembly(system, work).run();
+  assemble(parts, between, work);
   if (!known) {
     work.matrix.settle();
     work.factor.analyzePattern(work.matrix.lower());
@@ -339,15 +174,25 @@ bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& workspace, Cha
   work.factor.factorize(work.matrix.lower());
   if (work.factor.info() != Eigen::Success) return false;
   const Eigen::VectorXd pivots = work.factor.vectorD();
-  if (!pivots.allFinite()) return false;
-  // One negative pivot belongs to each multiplier; what is left are modes.
-  const auto multipliers = static_cast<int>(3 * count + 3 * (count - 1) + system.rows.size());
-  step.negative_pivots = static_cast<int>((pivots.array() < 0).count()) - multipliers;
-  if (!solve(work)) return false;
-  step.u.resize(count);
-  step.v.resize(count);
-  read_step(system, work, step);
+  if (!pivots.allFinite() || !solve(work)) return false;
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    assert(parts[c].system->probe_count() == 0);
+    read_step(*parts[c].system, work.chains[c], work.solution, *parts[c].step);
+    parts[c].step->negative_pivots = c == 0 ? count_negative(parts, pivots) : 0;
+  }
   return true;
+}
+
+bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step) {
+  const ChainPart alone{&system, &work, &step};
+  return sparse_chain_steps({&alone, 1}, {});
+}
+
+bool chain_steps(Parts chains, const Couplings& couplings) {
+  if (!couplings.empty()) return sparse_chain_steps(chains, couplings);
+  return std::all_of(chains.begin(), chains.end(), [](const ChainPart& chain) {
+    return chain_step(*chain.system, *chain.work, *chain.step);
+  });
 }
 
 }  // namespace wunderlich::math

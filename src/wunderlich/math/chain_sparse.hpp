@@ -1,4 +1,4 @@
-/// Newton's step on a chain some of whose links feel one another, by a sparse factorisation. Internal to math/.
+/// Newton's step on chains whose links feel one another, by a sparse factorisation. Internal to math/.
 ///
 /// Poses stay unknowns beside the joints' coordinates, and what a joint and a span do to them are constraints with
 /// multipliers: the matrix is a band with a few blocks off it, one for each pair of links that touch.
@@ -29,21 +29,33 @@ struct NodeWrench {
   double pull = 0;  ///< the part of it in u_1 that the torque and forces on surfaces exert
 };
 
+/// One chain's share of the matrix.
+struct ChainUnknowns {
+  std::vector<NodePlaces> places;
+  int theta_base = -1, first_row = -1;
+  std::vector<NodeWrench> wrench;
+};
+
 struct SparseWorkspace {
   std::vector<int> key;  ///< what the pattern depends on
-  std::vector<NodePlaces> places;
-  int theta_base = -1, first_row = -1, size = 0;
+  std::vector<ChainUnknowns> chains;
+  int size = 0;
   std::vector<char> fixed;
-  std::vector<NodeWrench> wrench;
   RepeatedMatrix matrix;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor;
   Eigen::VectorXd right, solution, rest;
 };
 
 /// Forces and torques that each joint and span carries, and the exact gradient.
-void find_wrenches(const ChainSystem& system, SparseWorkspace& work, Vec6& base_gradient);
+void find_wrenches(const ChainSystem& system, std::vector<NodeWrench>& wrenches, Vec6& base_gradient);
 
-/// As chain_step, for systems with couplings; no followers.
+/// Fills matrix and right-hand side, in an order that the work's key decides.
+void assemble(std::span<const ChainPart> chains, const std::vector<ChainCoupling>& couplings, SparseWorkspace& work);
+
+/// As chain_steps, for chains with couplings in themselves or between them; no followers.
+bool sparse_chain_steps(std::span<const ChainPart> chains, const std::vector<ChainCoupling>& couplings);
+
+/// The same for one.
 bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step);
 
 }  // namespace wunderlich::math

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "wunderlich/base/types.hpp"
@@ -91,6 +92,12 @@ struct PointCoupling {
   Mat3 geometric = Mat3::Zero();  ///< further Hessian, of what carries forces
 };
 
+/// The same between points of two chains.
+struct ChainCoupling {
+  std::array<int, 2> chain;
+  PointCoupling points;  ///< the first chain's and the second's
+};
+
 /// The turn of the joint by du, about the axis it has.
 inline Four turn_of(const ChainLink& link, const Vec2& du) {
   return all(du[0]) * link.axis[0] + all(du[1]) * link.axis[1];
@@ -143,5 +150,16 @@ struct ChainWorkspace {
 /// Solves for the step. Returns false if a pivot or the Schur complement is singular (the step is then not
 /// written); an indefinite but regular system is solved and its negative count reported.
 bool chain_step(const ChainSystem& system, ChainWorkspace& work, ChainStep& step);
+
+/// One of several chains that are solved for together.
+struct ChainPart {
+  const ChainSystem* system;
+  ChainWorkspace* work;
+  ChainStep* step;
+};
+
+/// The same for several chains at once; without couplings each by itself. Negative pivots are counted in the steps'
+/// sum: those of chains that feel one another in the first.
+bool chain_steps(std::span<const ChainPart> chains, const std::vector<ChainCoupling>& couplings);
 
 }  // namespace wunderlich::math

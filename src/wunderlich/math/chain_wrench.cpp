@@ -8,10 +8,9 @@ Vec3 vec(const Four& v) { return first_three(v); }
 
 }  // namespace
 
-void find_wrenches(const ChainSystem& system, SparseWorkspace& work, Vec6& base_gradient) {
+void find_wrenches(const ChainSystem& system, std::vector<NodeWrench>& w, Vec6& base_gradient) {
   const std::size_t count = system.links.size();
-  work.wrench.assign(count, {Vec3::Zero(), Vec3::Zero(), Vec2::Zero(), 0});
-  std::vector<NodeWrench>& w = work.wrench;  // first each node's own, then with everything beyond
+  w.assign(count, {Vec3::Zero(), Vec3::Zero(), Vec2::Zero(), 0});  // first each node's own, then with all beyond
   base_gradient.setZero();
   for (std::size_t i = 0; i < count; ++i) {
     const ChainLink& link = system.links[i];

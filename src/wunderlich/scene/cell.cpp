@@ -30,7 +30,8 @@ Cell root_cell(const Value& root) { return {&root, "", "", root.place}; }
 Cell child(const Cell& parent, const std::string& name) {
   const std::string dot = parent.path.empty() ? "" : ".";
   const Value* value = parent.value == nullptr ? nullptr : parent.value->find(name);
-  return {value, parent.path + dot + name, parent.pattern + dot + name, value != nullptr ? value->place : parent.place};
+  const bool elsewhere = value != nullptr && !value->alias.empty();
+  return {value, elsewhere ? value->alias : parent.path + dot + name, parent.pattern + dot + name, value != nullptr ? value->place : parent.place};
 }
 
 Cell element(const Cell& list, std::size_t index) {

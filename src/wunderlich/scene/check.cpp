@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wunderlich/base/version.hpp"
 #include "wunderlich/scene/schema.hpp"
 #include "wunderlich/scene/text.hpp"
 
 namespace wunderlich::scene {
 
 namespace {
-
-/// Keys of the published scene format that this version cannot do; they are no typing errors.
-const std::vector<std::string> later_keys = {
-    "ribbons",
-};
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -44,10 +38,6 @@ std::string elsewhere(const std::string& name) {
     if (dot != std::string::npos && !in_list && key.path.substr(dot + 1) == name) return key.path;
   }
   return "";
-}
-
-[[noreturn]] void fail_unsupported(const Place& place, const std::string& path, const std::string& what) {
-  fail(place, path, fmt::format("{} not supported yet by this version ({} {})", what, program, version));
 }
 
 [[noreturn]] void fail_unknown(const Place& place, const std::string& path, const std::string& pattern,
@@ -108,8 +98,6 @@ void check_map(const Cell& cell) {
     // A `*` in the table stands for an index, which no map has.
     if (find_key(pattern) != nullptr && name.find('*') == std::string::npos) {
       check_cell({&map.items[i], path, pattern, map.items[i].place});
-    } else if (contains(later_keys, pattern)) {
-      fail_unsupported(map.name_places[i], path, "this key is");
     } else {
       fail_unknown(map.name_places[i], path, cell.pattern, name);
     }

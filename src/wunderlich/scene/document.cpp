@@ -206,7 +206,7 @@ Value parse_document(const std::string& text, const std::string& source, bool ov
   std::istringstream stream(text);
   try {
     YAML::Parser parser(stream);
-    if (!parser.HandleNextDocument(builder)) return {Value::Kind::null, false, "", {}, {}, {}, builder.place({})};
+    if (!parser.HandleNextDocument(builder)) return {Value::Kind::null, false, "", {}, {}, {}, builder.place({}), ""};
     Value root = builder.take();
     TreeBuilder second(source, override_source);
     if (parser.HandleNextDocument(second)) fail(second.take().place, "", "a scene is one YAML document, not several");

@@ -31,6 +31,7 @@ struct Value {
   std::vector<std::string> names;  ///< map keys, parallel to `items`; unique
   std::vector<Place> name_places;  ///< parallel to `names`
   Place place;
+  std::string alias;  ///< where the document has it, if it is read from elsewhere: `ribbons.1.clamps`
 
   /// The value of a map key, or null.
   const Value* find(std::string_view name) const;

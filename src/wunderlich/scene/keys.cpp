@@ -223,6 +223,33 @@ const std::vector<Key> before_solver = {
     {"initial.spin", Type::vector, "rad/s", -1e6, 1e6, "[0, 0, 0]", {}, "Angular velocity about the center of mass."},
 };
 
+/// A strip of several has its own of these.
+bool belongs_to_a_strip(const std::string& path) {
+  const std::string section = path.substr(0, path.find('.'));
+  return section == "ribbon" || section == "clamps" || section == "pins" || section == "forces" || section == "initial";
+}
+
+/// The strips of a scene with several: each has the keys of `ribbon`, and the sections that belong to a strip.
+std::vector<Key> strip_keys() {
+  std::vector<Key> list{{"ribbons",
+                         Type::list,
+                         "",
+                         0,
+                         1000,
+                         "",
+                         {},
+                         "Several strips in one scene, instead of `ribbon`. Each entry has the keys of `ribbon` itself, a `name`, and its "
+                         "own `clamps`, `pins`, `forces` and `initial`; everything else is common to all. With "
+                         "`contact.self: true` they touch one another. Several strips move with `solver.method: implicit`."},
+                        {"ribbons.*.name", Type::text, "", 0, 0, "", {}, "What the strip is called in the report."}};
+  for (Key key : before_solver) {
+    if (!belongs_to_a_strip(key.path) || key.path == "ribbon") continue;
+    key.path = "ribbons.*." + (key.path.compare(0, 7, "ribbon.") == 0 ? key.path.substr(7) : key.path);
+    list.push_back(key);
+  }
+  return list;
+}
+
 const std::vector<Key> after_solver = {
     {"output", Type::map, "", 0, 0, "", {}, "What the run folder holds."},
     {"output.frames", Type::integer, "", 1, 100000, "60", {}, "At most so many recorded frames."},
@@ -243,6 +270,8 @@ const std::vector<Key> after_solver = {
 const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all = before_solver;
+    const std::vector<Key> strips = strip_keys();
+    all.insert(all.end(), strips.begin(), strips.end());
     all.insert(all.end(), obstacle_keys().begin(), obstacle_keys().end());
     all.insert(all.end(), solver_keys().begin(), solver_keys().end());
     all.insert(all.end(), after_solver.begin(), after_solver.end());

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/scene/cursor.hpp"
@@ -13,8 +14,8 @@ namespace implicit = solver::implicit;
 
 namespace {
 
-/// The supports that hold at a time, on the strip as they hold it.
-solver::PathProblem problem_of(const Scene& scene, double time) {
+/// One strip with the supports that hold at a time, as they hold it.
+solver::PathProblem path_of(const Scene& scene, double time) {
   solver::PathOptions options;
   options.model = scene.solver.energy;
   constraint::Surroundings surroundings = scene.surroundings;
@@ -22,6 +23,12 @@ solver::PathProblem problem_of(const Scene& scene, double time) {
   supports.erase(std::remove_if(supports.begin(), supports.end(), [&](const auto& s) { return !holds(s, time); }),
                  supports.end());
   return solver::make_path(motion_ribbon(scene, time), surroundings, options);
+}
+
+std::vector<solver::PathProblem> paths_of(const Scene& scene, double time) {
+  std::vector<solver::PathProblem> paths;
+  for (const Scene* strip : strips_of(scene)) paths.push_back(path_of(*strip, time));
+  return paths;
 }
 
 /// What the summary says of the steps so far; numbers, for the checkpoint.
@@ -42,57 +49,65 @@ void visit_all(Findings& findings, implicit::State& state, const Visit& visit) {
     for (auto& v : list) visit(v[0]), visit(v[1]), visit(v[2]);
   };
   visit(findings.impulses), visit(findings.touching), visit(findings.nearest);
-  auto& p = state.points;
-  for (auto* list : {&p.x, &p.v, &p.a, &p.acceleration, &p.x_before, &p.v_before}) vectors(*list);
-  auto& base = state.before.base;
-  visit(base.position[0]), visit(base.position[1]), visit(base.position[2]);
-  visit(base.frame.x()), visit(base.frame.y()), visit(base.frame.z()), visit(base.frame.w());
-  for (auto& kappa : state.before.kappa) visit(kappa);
-  for (auto& eta : state.before.eta) visit(eta);
   whole(state.level), whole(state.calm);
   for (double* number : {&state.last_step, &state.elastic, &state.peak, &state.missing}) visit(*number);
-  for (int c = 0; c < 3; ++c) visit(state.momentum.linear[c]), visit(state.momentum.angular[c]);
-  for (auto& c : state.base_reaction) visit(c);
+  for (implicit::StripState& strip : state.strips) {
+    auto& p = strip.points;
+    for (auto* list : {&p.x, &p.v, &p.a, &p.acceleration, &p.x_before, &p.v_before}) vectors(*list);
+    auto& base = strip.before.base;
+    visit(base.position[0]), visit(base.position[1]), visit(base.position[2]);
+    visit(base.frame.x()), visit(base.frame.y()), visit(base.frame.z()), visit(base.frame.w());
+    for (auto& kappa : strip.before.kappa) visit(kappa);
+    for (auto& eta : strip.before.eta) visit(eta);
+    for (int c = 0; c < 3; ++c) visit(strip.momentum.linear[c]), visit(strip.momentum.angular[c]);
+    for (auto& c : strip.base_reaction) visit(c);
+  }
 }
 
 class ImplicitMover : public Mover {
  public:
-  explicit ImplicitMover(const Scene& scene) : scene_(scene), problem_(problem_of(scene, 0)) {}
+  explicit ImplicitMover(const Scene& scene) : scene_(scene), paths_(paths_of(scene, 0)) {}
 
-  void start(const geometry::State& shape) override {
-    state_ = implicit::start(problem_, scene_.solver.implicit, shape, scene_.initial.spin, work_);
-    shape_ = implicit::shape_of(problem_, state_);
+  void start(const std::vector<geometry::State>& shapes) override {
+    std::vector<Vec3> spins;
+    for (const Scene* strip : strips_of(scene_)) spins.push_back(strip->initial.spin);
+    state_ = implicit::start(paths_, scene_.solver.implicit, shapes, spins, work_);
+    take_shapes();
   }
 
   Move step(double, double t1, int halvings, Recording& recording) override {
     const Stopwatch watch;
-    const implicit::StepReport report = implicit::step(problem_, scene_.solver.implicit, t1, halvings, state_, work_);
+    const implicit::StepReport report = implicit::step(paths_, scene_.solver.implicit, t1, halvings, state_, work_);
     recording.add_phase_time("minimise", watch.seconds());
     if (report.accepted) {
       findings_.impulses += report.inelastic ? 1 : 0;
       findings_.nearest = std::min(findings_.nearest, report.nearest);
       findings_.touching = report.touching;
-      shape_ = implicit::shape_of(problem_, state_);
+      take_shapes();
     }
     return {report.accepted, report.iterations, report.failure};
   }
 
   void release() override {
-    const solver::PathProblem before = std::move(problem_);
-    problem_ = problem_of(scene_, state_.path.t);
-    implicit::change_supports(before, problem_, state_);
-    implicit::find_accelerations(problem_, scene_.solver.implicit, state_, work_);
-    shape_ = implicit::shape_of(problem_, state_);
+    const std::vector<solver::PathProblem> before = std::exchange(paths_, paths_of(scene_, state_.time()));
+    for (std::size_t i = 0; i < paths_.size(); ++i) implicit::change_supports(before[i], paths_[i], state_.strips[i]);
+    implicit::find_accelerations(paths_, scene_.solver.implicit, state_, work_);
+    take_shapes();
   }
 
-  const geometry::Ribbon& ribbon() const override { return problem_.ribbon; }
-  const geometry::State& shape() const override { return shape_; }
+  const geometry::Ribbon& ribbon(std::size_t strip) const override { return paths_[strip].ribbon; }
+  const std::vector<geometry::State>& shapes() const override { return shapes_; }
   double kinetic_energy() const override {
-    return implicit::kinetic_energy(problem_.ribbon, scene_.solver.implicit.kinetic, state_.points,
-                                    state_.path.chain.eta);
+    double sum = 0;
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const implicit::StripState& strip = state_.strips[i];
+      sum += implicit::kinetic_energy(paths_[i].ribbon, scene_.solver.implicit.kinetic, strip.points,
+                                      strip.path.chain.eta);
+    }
+    return sum;
   }
   void add_findings(Summary& summary) const override {
-    if (!problem_.surroundings.obstacles.empty() || problem_.surroundings.contact.self) {
+    if (!scene_.surroundings.obstacles.empty() || scene_.surroundings.contact.self) {
       const double nearest = findings_.nearest;
       summary.contact = ContactSummary{static_cast<int>(findings_.touching), std::max(0.0, -nearest), nearest};
     }
@@ -102,40 +117,57 @@ class ImplicitMover : public Mover {
         " steps: a support starts at once, or the strip comes taut, folds or hits a solid within a step");
   }
 
+  /// The time, then each strip's cursor behind its size, then the rest.
   std::vector<double> pack() const override {
-    std::vector<double> out = pack_cursor(state_.path);
-    out.insert(out.begin(), {state_.path.t, static_cast<double>(out.size())});
+    std::vector<double> out{state_.time()};
+    for (const implicit::StripState& strip : state_.strips) {
+      const std::vector<double> cursor = pack_cursor(strip.path);
+      out.push_back(static_cast<double>(cursor.size()));
+      out.insert(out.end(), cursor.begin(), cursor.end());
+    }
     implicit::State state = state_;
     Findings findings = findings_;
     visit_all(findings, state, [&](double number) { out.push_back(number); });
     return out;
   }
 
-  void unpack(const geometry::State&, const std::vector<double>& numbers) override {
+  void unpack(const std::vector<geometry::State>&, const std::vector<double>& numbers) override {
     const auto broken = [] { throw InputError("checkpoint: the stored solver state does not fit the stored scene"); };
-    if (numbers.size() < 2 || !(numbers[1] >= 0 && numbers[1] < static_cast<double>(numbers.size() - 1))) broken();
-    problem_ = problem_of(scene_, numbers[0]);  // later than the last record, and something may have let go since
-    const auto end = numbers.begin() + 2 + static_cast<std::ptrdiff_t>(numbers[1]);
-    state_.path = solver::PathState();
-    state_.path = unpack_cursor(problem_, {numbers.begin() + 2, end});
-    implicit::resize(implicit::point_count(problem_.ribbon, scene_.solver.implicit.kinetic), state_.points);
-    state_.before = state_.path.chain;
-    std::size_t size = 0;
+    if (numbers.empty()) broken();
+    paths_ = paths_of(scene_, numbers[0]);  // later than the last record, and something may have let go since
+    state_.strips.assign(paths_.size(), {});
+    auto next = numbers.begin() + 1;
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      implicit::StripState& strip = state_.strips[i];
+      const auto left = static_cast<double>(numbers.end() - next);
+      if (!(left >= 1 && *next >= 0 && *next < left)) broken();
+      const auto size = static_cast<std::ptrdiff_t>(*next++);
+      strip.path = unpack_cursor(paths_[i], {next, next + size});
+      if (strip.path.phase != solver::Phase::load) broken();
+      next += size;
+      implicit::resize(implicit::point_count(paths_[i].ribbon, scene_.solver.implicit.kinetic), strip.points);
+      strip.before = strip.path.chain;
+    }
+    std::ptrdiff_t size = 0;
     visit_all(findings_, state_, [&](double) { ++size; });
-    if (static_cast<std::ptrdiff_t>(size) != numbers.end() - end) broken();
-    auto next = end;
+    if (size != numbers.end() - next) broken();
     visit_all(findings_, state_, [&](double& number) { number = *next++; });
-    const bool fits = state_.level >= 0 && state_.level < implicit::kDampingLevels && state_.calm >= 0;
-    if (!fits || state_.path.phase != solver::Phase::load) broken();
-    shape_ = implicit::shape_of(problem_, state_);
+    if (!(state_.level >= 0 && state_.level < implicit::kDampingLevels && state_.calm >= 0)) broken();
+    take_shapes();
+  }
+
+ private:
+  void take_shapes() {
+    shapes_.resize(paths_.size());
+    for (std::size_t i = 0; i < paths_.size(); ++i) shapes_[i] = implicit::shape_of(paths_[i], state_.strips[i]);
   }
 
  private:
   const Scene& scene_;
-  solver::PathProblem problem_;
+  std::vector<solver::PathProblem> paths_;
   implicit::State state_;
   implicit::Workspace work_;
-  geometry::State shape_;
+  std::vector<geometry::State> shapes_;
   Findings findings_;
 };
 

@@ -50,7 +50,10 @@ class TwoStageMover : public Mover {
  public:
   explicit TwoStageMover(const Scene& scene) : scene_(scene), ribbon_(motion_ribbon(scene, 0)) {}
 
-  void start(const geometry::State& shape) override { state_ = two_stage::start(ribbon_, shape); }
+  void start(const std::vector<geometry::State>& shapes) override {
+    state_ = two_stage::start(ribbon_, shapes.front());
+    shapes_ = {state_.shape};
+  }
 
   Move step(double t0, double t1, int, Recording& recording) override {
     const two_stage::Drive drive = drive_between(scene_, ribbon_, state_.shape, t0, t1);
@@ -63,6 +66,7 @@ class TwoStageMover : public Mover {
     stable_step_ = report.stable_step;
     if (!report.accepted) return {false, 0, report.failure};
     state_.shape.time = t1;
+    shapes_.front() = state_.shape;
     counters_.taken += 1;
     counters_.substeps += report.substeps;
     counters_.exceeded += report.exceeds_bound ? 1 : 0;
@@ -77,10 +81,11 @@ class TwoStageMover : public Mover {
     ribbon_ = motion_ribbon(scene_, state_.shape.time);
     if (!ribbon_.clamped[0]) state_.shape.end_frame[0] = state_.shape.q.front();
     if (!ribbon_.clamped[1]) state_.shape.end_frame[1] = state_.shape.q.back();
+    shapes_.front() = state_.shape;
   }
 
-  const geometry::Ribbon& ribbon() const override { return ribbon_; }
-  const geometry::State& shape() const override { return state_.shape; }
+  const geometry::Ribbon& ribbon(std::size_t) const override { return ribbon_; }
+  const std::vector<geometry::State>& shapes() const override { return shapes_; }
   double kinetic_energy() const override { return energy::kinetic_value(ribbon_, state_.shape); }
 
   void add_findings(Summary& summary) const override {
@@ -108,7 +113,8 @@ class TwoStageMover : public Mover {
     return out;
   }
 
-  void unpack(const geometry::State& shape, const std::vector<double>& numbers) override {
+  void unpack(const std::vector<geometry::State>& shapes, const std::vector<double>& numbers) override {
+    const geometry::State& shape = shapes.front();
     ribbon_ = motion_ribbon(scene_, shape.time);
     state_ = two_stage::start(ribbon_, shape);
     std::size_t size = 0;
@@ -119,12 +125,14 @@ class TwoStageMover : public Mover {
     std::size_t next = 0;
     visit_all(counters_, state_, [&](double& number) { number = numbers[next++]; });
     ribbon_ = motion_ribbon(scene_, state_.shape.time);
+    shapes_ = {state_.shape};
   }
 
  private:
   const Scene& scene_;
   geometry::Ribbon ribbon_;
   two_stage::State state_;
+  std::vector<geometry::State> shapes_;  ///< the one
   two_stage::Workspace work_;
   Counters counters_;
   double stable_step_ = 0;

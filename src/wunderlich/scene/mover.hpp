@@ -23,19 +23,19 @@ struct Move {
 class Mover {
  public:
   virtual ~Mover() = default;
-  virtual void start(const geometry::State& shape) = 0;
+  virtual void start(const std::vector<geometry::State>& shapes) = 0;
   /// One step; a step that fails leaves everything as it was. Times of phases go to the recording.
   /// `halvings`: how often it has been halved.
   virtual Move step(double t0, double t1, int halvings, Recording& recording) = 0;
   /// Takes the supports that hold from now on, after some have let go.
   virtual void release() = 0;
-  virtual const geometry::Ribbon& ribbon() const = 0;
-  virtual const geometry::State& shape() const = 0;
+  virtual const geometry::Ribbon& ribbon(std::size_t strip) const = 0;
+  virtual const std::vector<geometry::State>& shapes() const = 0;  ///< one a strip, at least one
   virtual double kinetic_energy() const = 0;  ///< [J]
   virtual void add_findings(Summary& summary) const = 0;
   /// The method's own state as numbers, and back; throws InputError if they do not fit.
   virtual std::vector<double> pack() const = 0;
-  virtual void unpack(const geometry::State& shape, const std::vector<double>& numbers) = 0;
+  virtual void unpack(const std::vector<geometry::State>& shapes, const std::vector<double>& numbers) = 0;
 };
 
 std::unique_ptr<Mover> two_stage_mover(const Scene& scene);

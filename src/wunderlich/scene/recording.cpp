@@ -58,19 +58,20 @@ double normalized(const geometry::Ribbon& ribbon, double elastic) {
 }
 
 Summary summary_of(const Scene& scene, const geometry::Ribbon& ribbon, const Record& last, Outcome outcome) {
-  const std::vector<double> kappa = geometry::strains(ribbon, last.state).kappa;
+  const geometry::State& state = last.states.front();
+  const std::vector<double> kappa = geometry::strains(ribbon, state).kappa;
   Summary summary;
   summary.scene = scene.name;
   summary.converged = outcome == Outcome::converged;
   summary.segments = ribbon.segments;
-  summary.time = last.state.time;
+  summary.time = state.time;
   summary.energy = last.history.energy;
   summary.constraints = last.history.constraints;
   summary.area_error = last.history.area_error;
-  summary.topology = geometry::topology(ribbon, last.state);
+  summary.topology = geometry::topology(ribbon, state);
   summary.kappa_zeros = geometry::kappa_zeros(ribbon, kappa);
   if (scene.ribbon.closure == geometry::Closure::loop) {
-    summary.closure_error = (last.state.r.back() - last.state.r.front()).norm() / ribbon.length;
+    summary.closure_error = (state.r.back() - state.r.front()).norm() / ribbon.length;
   }
   if (most_bent(ribbon, kappa) > 0.5) {
     summary.warnings.push_back("some hinges turn by more than 0.5 rad; more segments would resolve the curvature");

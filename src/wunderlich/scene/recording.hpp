@@ -34,7 +34,7 @@ struct Recording {
 /// Keeps about `limit` records: when there are too many, every second one goes, but never the first or last.
 void thin(std::vector<Record>& records, int limit);
 
-/// What a summary says of the last record, whatever the method.
+/// What a summary says of the last record, whatever the method; of several strips the shape is the first one's.
 Summary summary_of(const Scene& scene, const geometry::Ribbon& ribbon, const Record& last, Outcome outcome);
 
 /// V l/(D w).

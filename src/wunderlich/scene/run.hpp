@@ -14,8 +14,8 @@ namespace wunderlich::scene {
 
 /// One recorded instant as states, enough to rebuild its Frame.
 struct Record {
-  geometry::State state;
-  HistoryRow history;
+  std::vector<geometry::State> states;  ///< one a strip
+  HistoryRow history;                   ///< sums and largest errors over all strips
 };
 
 enum class Outcome { converged, not_converged, interrupted };
@@ -48,9 +48,9 @@ void check_start(const Scene& scene);
 /// as an uninterrupted one.
 RunResult run(const Scene& scene, const Observer& observer, const Progress* resume = nullptr);
 
-/// The exporter's view of a record.
-Frame frame_of(const Scene& scene, const geometry::State& state);
-FlatPattern pattern_of(const Scene& scene, const geometry::State& state);
+/// The exporter's view of a record. Several strips are one surface in parts, told apart by its field `ribbon`.
+Frame frame_of(const Scene& scene, const Record& record);
+std::vector<FlatPattern> patterns_of(const Scene& scene, const Record& record);
 
 /// The obstacles at these times.
 std::vector<Body> bodies_of(const Scene& scene, const std::vector<double>& times);

@@ -56,23 +56,34 @@ struct Motion {
     return number >= step_count() ? scene.solver.duration : static_cast<double>(number) * scene.solver.time_step;
   }
 
-  double time() const { return mover->shape().time; }
+  double time() const { return mover->shapes().front().time; }
 
   void record(int used, double us) {
-    const Ribbon& ribbon = mover->ribbon();
     Record entry;
-    entry.state = mover->shape();
+    entry.states = mover->shapes();
     HistoryRow& row = entry.history;
-    row.time = entry.state.time;
-    row.energy.elastic = energy::elastic_value(ribbon, scene.solver.energy, entry.state);
+    row.time = time();
     row.energy.kinetic = mover->kinetic_energy();
-    row.energy.gravity = energy::gravity_value(ribbon, scene.surroundings.gravity, entry.state);
-    row.energy.normalized = normalized(ribbon, row.energy.elastic);
-    row.constraints = constraint::errors(ribbon, entry.state);
-    row.area_error = geometry::area_error(ribbon, entry.state);
+    for (std::size_t i = 0; i < entry.states.size(); ++i) add_strip(mover->ribbon(i), entry.states[i], row);
     row.iterations = used;
     row.step_us = us;
     recording.records.push_back(std::move(entry));
+  }
+
+  /// Adds energies, keeps the largest errors.
+  void add_strip(const Ribbon& ribbon, const geometry::State& shape, HistoryRow& row) const {
+    const double elastic = energy::elastic_value(ribbon, scene.solver.energy, shape);
+    row.energy.elastic += elastic;
+    row.energy.gravity += energy::gravity_value(ribbon, scene.surroundings.gravity, shape);
+    row.energy.normalized += normalized(ribbon, elastic);
+    const ConstraintErrors errors = constraint::errors(ribbon, shape);
+    ConstraintErrors& most = row.constraints;
+    for (double ConstraintErrors::*error :
+         {&ConstraintErrors::max_length_error, &ConstraintErrors::max_parallel_error, &ConstraintErrors::max_binormal,
+          &ConstraintErrors::max_torsion_mismatch, &ConstraintErrors::max_ruling_ratio}) {
+      most.*error = std::max(most.*error, errors.*error);
+    }
+    row.area_error = std::max(row.area_error, geometry::area_error(ribbon, shape));
   }
 
   /// From t0 to t1; a step that fails is tried again in halves.
@@ -89,14 +100,22 @@ struct Motion {
     return advance(t0, middle, halvings + 1, used) && advance(middle, t1, halvings + 1, used);
   }
 
+  /// Every support of every strip.
+  template <class Visit>
+  void visit_supports(const Visit& visit) const {
+    for (const Scene* strip : strips_of(scene)) {
+      for (const constraint::Support& support : strip->surroundings.supports) visit(support);
+    }
+  }
+
   /// Up to t1, with a stop wherever a support lets go.
   bool advance_to(double t1, int& used) {
     while (time() < t1) {
       const double t0 = time();
       double next = t1;
-      for (const constraint::Support& support : scene.surroundings.supports) {
+      visit_supports([&](const constraint::Support& support) {
         if (support.release > t0 * (1 + 1e-9) && support.release < next * (1 - 1e-9)) next = support.release;
-      }
+      });
       if (!advance(t0, next, 0, used)) return false;
       if (released(t0, next)) mover->release();
     }
@@ -105,28 +124,35 @@ struct Motion {
 
   /// Has a support let go?
   bool released(double t0, double t1) const {
-    const auto& supports = scene.surroundings.supports;
-    return std::any_of(supports.begin(), supports.end(), [&](const auto& s) { return holds(s, t0) && !holds(s, t1); });
+    bool any = false;
+    visit_supports([&](const constraint::Support& s) { any = any || (holds(s, t0) && !holds(s, t1)); });
+    return any;
   }
 
   /// When the last thing that the scene imposes has happened.
   double last_event() const {
     double last = 0;
-    for (const constraint::Support& support : scene.surroundings.supports) {
+    visit_supports([&](const constraint::Support& support) {
       last = std::max(last, end_time(support.motion));
       if (std::isfinite(support.release)) last = std::max(last, support.release);
+    });
+    for (const Scene* strip : strips_of(scene)) {
+      for (const constraint::Load& load : strip->surroundings.loads) last = std::max(last, load.keys.back().time);
     }
-    for (const constraint::Load& load : scene.surroundings.loads) last = std::max(last, load.keys.back().time);
     return last;
   }
 
   /// Slower than a wave of bending would cross 1e-5 of the strip in the time it takes along the strip.
   bool is_resting() const {
     if (time() < last_event()) return false;
-    const Ribbon& ribbon = mover->ribbon();
-    double fastest = 0;
-    for (const Vec3& v : mover->shape().r_dot) fastest = std::max(fastest, v.norm());
-    return fastest < 1e-5 * std::sqrt(ribbon.bending_stiffness / ribbon.area_density) / ribbon.length;
+    for (std::size_t i = 0; i < mover->shapes().size(); ++i) {
+      const Ribbon& ribbon = mover->ribbon(i);
+      const double slow = 1e-5 * std::sqrt(ribbon.bending_stiffness / ribbon.area_density) / ribbon.length;
+      for (const Vec3& v : mover->shapes()[i].r_dot) {
+        if (!(v.norm() < slow)) return false;
+      }
+    }
+    return true;
   }
 
   Outcome go(const Observer& observer) {
@@ -159,6 +185,18 @@ struct Motion {
     return out;
   }
 
+  void start() {
+    std::vector<geometry::State> shapes;
+    for (const Scene* strip : strips_of(scene)) {
+      const Ribbon& ribbon = mover->ribbon(shapes.size());
+      Start start = start_of(*strip, ribbon);
+      if (failure.empty()) failure = start.failure;
+      shapes.push_back(start.failure.empty() ? std::move(start.shape) : geometry::straight_state(ribbon));
+    }
+    if (failure.empty() && meet(scene, shapes)) failure = "a strip starts across itself or another strip, or touches it";
+    mover->start(shapes);
+  }
+
   void resume(const Progress& progress) {
     recording.records = progress.records;
     std::vector<double> numbers = progress.cursor;
@@ -167,7 +205,7 @@ struct Motion {
       *counter = std::lround(numbers.back());
       numbers.pop_back();
     }
-    mover->unpack(progress.records.back().state, numbers);
+    mover->unpack(progress.records.back().states, numbers);
   }
 };
 
@@ -192,16 +230,14 @@ RunResult run_motion(const Scene& scene, const Observer& observer, const Progres
     motion.resume(*resume);
     result.outcome = motion.go(observer);
   } else {
-    const Start start = start_of(scene, motion.mover->ribbon());
-    motion.failure = start.failure;
-    motion.mover->start(start.failure.empty() ? start.shape : geometry::straight_state(motion.mover->ribbon()));
+    motion.start();
     motion.record(0, 0);
     if (motion.failure.empty()) result.outcome = motion.go(observer);
   }
-  if (result.outcome == Outcome::not_converged && motion.recording.records.back().state.time < motion.time()) {
+  if (result.outcome == Outcome::not_converged && motion.recording.records.back().history.time < motion.time()) {
     motion.record(0, 0);  // the last good state
   }
-  result.summary = summary_of(scene, motion.mover->ribbon(), motion.recording.records.back(), result.outcome);
+  result.summary = summary_of(scene, motion.mover->ribbon(0), motion.recording.records.back(), result.outcome);
   result.summary.method = method_name(scene.solver.method);
   result.summary.steps = static_cast<int>(motion.step);
   result.summary.failure =

@@ -94,7 +94,7 @@ struct Run {
     State shape = geometry::state_of(solver::ribbon_of(path, state), state.chain, state.clock);
     Record entry;
     entry.history = history_of(path, state, shape, step, us);
-    entry.state = std::move(shape);
+    entry.states.push_back(std::move(shape));
     recording.records.push_back(std::move(entry));
     thin(recording.records, scene.output.frames);
   }
@@ -146,7 +146,7 @@ RunResult run_path(const Scene& scene, const Observer& observer, const Progress*
   result.outcome = run.go(observer);
   const Record& last = run.recording.records.back();
   if (result.outcome == Outcome::converged) {
-    run.failure = lost_turns(run.path, run.state, last.state);
+    run.failure = lost_turns(run.path, run.state, last.states.front());
     if (!run.failure.empty()) result.outcome = Outcome::not_converged;
   }
   result.summary = summarise(scene, run.path, run.state, last, result.outcome, run.work);

@@ -71,6 +71,11 @@ struct Scene {
   InitialState initial;
   SolverOptions solver;
   OutputOptions output;
+  std::string ribbon_name;    ///< of several: what this one is called; empty otherwise
+  std::vector<Scene> beside;  ///< further strips: the same scene with another ribbon, and what holds it
 };
+
+/// The strips of a scene: itself, and those beside it.
+std::vector<const Scene*> strips_of(const Scene& scene);
 
 }  // namespace wunderlich::scene

@@ -53,7 +53,9 @@ Beside values outside their range:
 - keyframes whose times do not increase; a force entry without force and torque; gravity with nothing that holds the
   strip;
 - meshes that are open, turned inside out or in part, or have edges of more than two faces; `file` and `obj` together;
-- obstacles with `solver.method: two-stage`; sizes and directions that a shape does not have; `contact` without
+- `ribbons` beside `ribbon`, or beside `clamps`, `pins`, `forces` or `initial`, which belong into its entries; several of
+  them with another method than `implicit`, or with `solver.conserve`;
+- sizes and directions that a shape does not have; `contact` without
   `obstacles`;
 - both `width` and `aspect`, both `bending_stiffness` and `young_modulus`, both `area_density` and `mass_density`;
 - more than 2e7 segments times frames, or more than 2e7 points of the rendered surface.
@@ -135,6 +137,8 @@ std::string schema_markdown() {
   top += header;
   std::string sections;
   for (const Key& key : keys()) {
+    // Those of several strips are the same as of one.
+    if (key.path.compare(0, 10, "ribbons.*.") == 0 && key.path != "ribbons.*.name") continue;
     const bool nested = key.path.find('.') != std::string::npos;
     const bool section = key.type == Type::map || key.type == Type::list;
     if (nested) {

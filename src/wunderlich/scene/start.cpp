@@ -122,21 +122,6 @@ Start shape_of(const Scene& scene, const Ribbon& ribbon) {
   return {};
 }
 
-/// A barrier keeps apart what is apart: does the strip cross or touch itself from the start?
-bool meets_itself(const Scene& scene, const Ribbon& ribbon, const State& shape) {
-  const constraint::Contact& contact = scene.surroundings.contact;
-  if (!contact.self) return false;
-  const geometry::Chain chain = geometry::chain_of(ribbon, shape);
-  geometry::Kinematics kinematics;
-  geometry::forward_kinematics(ribbon, chain, kinematics);
-  solver::SelfContact self;
-  solver::place_self(ribbon, scene.surroundings, contact.distance, true, chain.eta, self);
-  solver::SelfSearch search;
-  solver::SelfContacts contacts;
-  solver::find_pairs(ribbon, self, chain, kinematics, search, contacts);
-  return solver::smallest_distance(self, contacts) <= 0 || solver::count_crossings(ribbon, self, contacts, search) > 0;
-}
-
 void set_velocity(const InitialState& initial, const Ribbon& ribbon, State& state) {
   Vec3 center = Vec3::Zero();
   double mass = 0;
@@ -155,7 +140,6 @@ void set_velocity(const InitialState& initial, const Ribbon& ribbon, State& stat
 Start start_of(const Scene& scene, const Ribbon& ribbon) {
   Start start = shape_of(scene, ribbon);
   if (!start.failure.empty()) return start;
-  if (meets_itself(scene, ribbon, start.shape)) return {{}, "the strip starts across itself or touches itself"};
   const bool placed = scene.initial.shape == InitialShape::equilibrium || ribbon.is_loop();
   if (!placed) bring_to_supports(scene, ribbon, start.shape);
   start.shape.time = 0;
@@ -163,17 +147,42 @@ Start start_of(const Scene& scene, const Ribbon& ribbon) {
   return start;
 }
 
-void check_start(const Scene& scene) {
-  const constraint::Surroundings& surroundings = scene.surroundings;
-  // Other starts are not known before the run.
-  const bool known = scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
-                     scene.initial.shape == InitialShape::coil;
-  if (!known) return;
-  const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
-  if (surroundings.contact.self && scene.solver.method != Method::equilibrium) {
-    const std::string problem = start_of(scene, ribbon).failure;
-    if (!problem.empty()) throw InputError(scene.contact_place + ": " + problem);
+bool meet(const Scene& scene, const std::vector<State>& shapes) {
+  if (!scene.surroundings.contact.self) return false;
+  const std::vector<const Scene*> strips = strips_of(scene);
+  std::vector<Ribbon> ribbons;
+  std::vector<geometry::Chain> chains;
+  std::vector<geometry::Kinematics> kinematics(strips.size());
+  std::vector<solver::StripPlace> places;
+  ribbons.reserve(strips.size()), chains.reserve(strips.size());  // places refer to them
+  solver::SelfContact all;
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    ribbons.push_back(motion_ribbon(*strips[i], 0));
+    chains.push_back(geometry::chain_of(ribbons[i], shapes[i]));
+    geometry::forward_kinematics(ribbons[i], chains[i], kinematics[i]);
+    places.push_back({ribbons[i], chains[i], kinematics[i]});
+    solver::SelfContact self;
+    const constraint::Surroundings& surroundings = strips[i]->surroundings;
+    solver::place_self(ribbons[i], surroundings, surroundings.contact.distance, true, chains[i].eta, self);
+    solver::place_beside(self, all);
   }
+  solver::SelfSearch search;
+  solver::SelfContacts contacts;
+  solver::find_pairs(places, all, search, contacts);
+  return solver::smallest_distance(all, contacts) <= 0 || solver::count_crossings(all, contacts, search) > 0;
+}
+
+namespace {
+
+/// Other starts are not known before the run.
+bool start_is_known(const Scene& scene) {
+  return scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
+         scene.initial.shape == InitialShape::coil;
+}
+
+void check_obstacles(const Scene& scene) {
+  const constraint::Surroundings& surroundings = scene.surroundings;
+  const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
   if (surroundings.obstacles.empty()) return;
   const geometry::Chain chain = scene.solver.method == Method::equilibrium
                                     ? solver::start_path(solver::make_path(ribbon, surroundings, {})).chain
@@ -196,6 +205,25 @@ void check_start(const Scene& scene) {
                                  scene.obstacle_places[i], std::abs(distance), distance < 0 ? "inside" : "from it",
                                  contact.margin));
   }
+}
+
+}  // namespace
+
+void check_start(const Scene& scene) {
+  const std::vector<const Scene*> strips = strips_of(scene);
+  if (!std::all_of(strips.begin(), strips.end(), [](const Scene* strip) { return start_is_known(*strip); })) return;
+  for (const Scene* strip : strips) check_obstacles(*strip);
+  if (!scene.surroundings.contact.self || scene.solver.method == Method::equilibrium) return;
+  std::vector<State> shapes;
+  for (const Scene* strip : strips) {
+    Start start = start_of(*strip, motion_ribbon(*strip, 0));
+    if (!start.failure.empty()) throw InputError(scene.contact_place + ": " + start.failure);
+    shapes.push_back(std::move(start.shape));
+  }
+  if (!meet(scene, shapes)) return;
+  throw InputError(scene.contact_place + ": " +
+                   (strips.size() > 1 ? "the strips start across themselves or one another"
+                                      : "the strip starts across itself or touches itself"));
 }
 
 }  // namespace wunderlich::scene

@@ -16,4 +16,7 @@ struct Start {
 /// The state of `scene.initial` on the strip as it is held at time 0.
 Start start_of(const Scene& scene, const geometry::Ribbon& ribbon);
 
+/// A barrier keeps apart what is apart: do strips that feel themselves and one another cross or touch from the start?
+bool meet(const Scene& scene, const std::vector<geometry::State>& shapes);
+
 }  // namespace wunderlich::scene

@@ -235,7 +235,12 @@ void linearise(const Ribbon& ribbon, const ChainProblem& problem, const Chain& c
   add_loads(problem, chain, k, system);
   append_rows(ribbon, problem, chain, k, multipliers, system.rows);
   add_contact(ribbon, problem.contact, chain, k, touching.points, system);
-  if (problem.self.active()) add_self_contact(ribbon, problem.self, k, touching.self, system);
+  if (!touching.self.pairs.empty()) {
+    const StripPlace place{ribbon, chain, k};
+    ChainSystem* const systems[] = {&system};
+    std::vector<math::ChainCoupling> none;
+    add_self_contact({&place, 1}, problem.self, touching.self, systems, none);
+  }
 }
 
 void use_torsion_chart(const Ribbon& ribbon, const Chain& chain, ChainSystem& system) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/newton_parts.hpp"
 
 namespace wunderlich::solver {
 
@@ -14,143 +14,18 @@ using geometry::Ribbon;
 
 namespace {
 
-/// How far |x| may move towards 1 in one step, as a share of the way.
-constexpr double kBoundaryFraction = 0.9;
 constexpr double kKick = 0.05;  // largest fold-angle change that leaves a saddle [rad]
 constexpr int kMaxHalvings = 20, kMaxKicks = 20, kMaxUnshifted = 3;
 constexpr double kSaddleStep = 1e-7;  // a step this short under a shift: stationary, but is it a minimum?
 constexpr int kInversePasses = 12;
 constexpr double kNeutral = 1e-7, kRounding = 1e-15;  // eigenvalues below the first (units of the shift) count as zero
-constexpr double kHeld = 1e-13;     // of the rows (m, rad, 1) at the end of a step in time; lengths beyond 1 m count
-constexpr int kUnsettled = 3;       // first iterations, in which what sticks and what slips sorts itself ...
-constexpr double kSettling = 3e-4;  // ... unless steps are shorter than this
-constexpr double kSmallestShift = 1e-9, kLargestShift = 1e6, kShiftFactor = 5;
 
 struct Iterate {
   const Ribbon& ribbon;
   const ChainProblem& problem;
   NewtonWorkspace& work;
   double emphasis = 1;  ///< of the rows' penalties in the merit
-  double merit(const ObjectiveValue& value, const std::vector<double>& residuals) const;
-  double slope() const;
-  void weigh_rows();
 };
-
-/// Objective + new multipliers * rows + emphasis penalty/2 * rows^2: the Newton step is a descent direction of it.
-double Iterate::merit(const ObjectiveValue& value, const std::vector<double>& residuals) const {
-  double merit = value.total();
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    merit += residuals[i] * (work.step.multiplier[i] + 0.5 * emphasis * work.system.rows[i].penalty * residuals[i]);
-  }
-  return merit;
-}
-
-double Iterate::slope() const {
-  double slope = work.sweep.base_gradient.dot(work.step.base);
-  for (std::size_t i = 0; i < work.step.u.size(); ++i) slope += work.sweep.gradient[i].dot(work.step.u[i]);
-  for (std::size_t i = 0; i < work.system.rows.size(); ++i) {
-    const auto& row = work.system.rows[i];
-    slope -= row.residual * (work.step.multiplier[i] - row.multiplier + emphasis * row.penalty * row.residual);
-  }
-  return slope;
-}
-
-/// As much penalty as makes the step a descent: the Hessian on the constraints is positive, but under strong reactions
-/// the one with the system's penalties need not be. At least half of what the rows lose must show. @eq Nocedal2006:18.5
-void Iterate::weigh_rows() {
-  emphasis = 1;
-  double infeasibility = 0;
-  for (const auto& row : work.system.rows) infeasibility += row.penalty * row.residual * row.residual;
-  const double excess = slope() + 0.5 * infeasibility;
-  if (infeasibility > 0 && excess > 0) emphasis += excess / infeasibility;
-}
-
-/// Square of the angle by which the step turns the joint at a node.
-double turn_squared(const NewtonWorkspace& work, std::size_t node) {
-  const math::Four turn = math::turn_of(work.system.links[node], work.step.u[node]);
-  return math::dot3(turn, turn);
-}
-
-/// Largest fold-angle change, displacement / length, and (scaled: it is soft where kappa vanishes) eta change; all go
-/// into the report. Returns the largest fold-angle change alone.
-double measure_step(const Ribbon& ribbon, const NewtonWorkspace& work, NewtonReport& report) {
-  const double shorter = 1 / (ribbon.length * ribbon.length);
-  double most = 0, turn = 0;
-  for (std::size_t i = 0; i < work.step.u.size(); ++i) {
-    const double turned = turn_squared(work, i), moved = work.step.v[i].squaredNorm() * shorter;
-    const double slanted = 1e-6 * work.step.u[i][1] * work.step.u[i][1];
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const double size = turned + moved + slanted < kInfinity ? std::max({turned, moved, slanted}) : kInfinity;
-    turn = std::max(turn, turned);
-    if (size <= most) continue;
-    most = size;
-    report.worst_node = static_cast<int>(i);
-  }
-  report.last_step = std::sqrt(most);
-  return std::sqrt(turn);
-}
-
-/// Shortens the step to keep |x| < 1 and fold angles from jumping.
-double step_limit(const Ribbon& ribbon, const NewtonOptions& options, const Chain& chain, const NewtonWorkspace& work,
-                  double largest_turn) {
-  double limit = 1;
-  const auto& step = work.step;
-  for (std::size_t s = 0; s + 1 < step.u.size(); ++s) {
-    const double k = 0.5 * ribbon.width / ribbon.rest_length[s];
-    const double x = k * (chain.eta[s + 1] - chain.eta[s]);
-    const double dx = k * (step.u[s + 1][1] - step.u[s][1]);
-    const double room = kBoundaryFraction * (dx > 0 ? 1 - x : 1 + x);
-    if (limit * std::abs(dx) > room) limit = room / std::abs(dx);
-  }
-  const double turn = std::max(step.base.tail<3>().norm(), largest_turn);
-  return turn * limit > options.max_turn ? options.max_turn / turn : limit;
-}
-
-void apply_step(const Chain& chain, const math::ChainStep& step, double scale, Chain& trial) {
-  trial.base.position = chain.base.position + scale * step.base.head<3>();
-  trial.base.frame = (math::exp_map(scale * step.base.tail<3>()) * chain.base.frame).normalized();
-  trial.kappa.resize(step.u.size());
-  trial.eta.resize(step.u.size());
-  for (std::size_t i = 0; i < step.u.size(); ++i) {
-    trial.kappa[i] = chain.kappa[i] + scale * step.u[i][0];
-    trial.eta[i] = chain.eta[i] + scale * step.u[i][1];
-  }
-}
-
-/// NaN if any value is: it must not pass for small.
-double max_abs(const std::vector<double>& values) {
-  double most = 0;
-  for (const double v : values) {
-    if (std::isnan(v)) return v;
-    most = std::max(most, std::abs(v));
-  }
-  return most;
-}
-
-/// What a shift of 1 means: the bending energy of a segment in kappa, and D l/w in eta.
-Vec2 shift_units(const Ribbon& ribbon) {
-  const double l = ribbon.length / ribbon.segments;
-  return ribbon.bending_stiffness * l * Vec2(ribbon.width, 1 / ribbon.width);
-}
-
-/// The base too: a strip that hangs on one pin may turn about the vertical freely.
-void set_shift(const Ribbon& ribbon, double shift, math::ChainSystem& system) {
-  const Vec2 unit = shift * shift_units(ribbon);
-  const double base = shift * ribbon.bending_stiffness * ribbon.width / ribbon.length;
-  system.shift = {unit[0], unit[1]};
-  system.base_shift = {base / (ribbon.length * ribbon.length), base};
-}
-
-/// Solves without a shift, if need be without the terms that carry forces. False if negative modes are left.
-bool find_inertial_direction(const Ribbon& ribbon, NewtonWorkspace& work, NewtonReport& report) {
-  set_shift(ribbon, 0, work.system);
-  for (const bool geometric : {true, false}) {
-    work.system.geometric = geometric;
-    ++report.sweeps;
-    if (math::chain_step(work.system, work.sweep, work.step) && work.step.negative_pivots == 0) return true;
-  }
-  return false;
-}
 
 /// Solves with the smallest shift of the series that leaves no negative mode; false if none does.
 bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& work, NewtonReport& report,
@@ -169,14 +44,11 @@ bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& wo
 
 /// Kinematics and value of the iterate, with contact.
 void value_iterate(const Ribbon& ribbon, const ChainProblem& problem, const Chain& current, NewtonWorkspace& work) {
-  const bool placed = work.placed;
-  work.placed = false;
-  if (!placed) geometry::forward_kinematics(ribbon, current, work.kinematics);
+  geometry::forward_kinematics(ribbon, current, work.kinematics);
   work.value = objective(ribbon, problem, current, work.kinematics, work.kinematics);
   if (problem.touchable().empty()) return;
-  if (!placed) find_touching(ribbon, problem.touchable(), current, work.kinematics, work.search, work.touching);
+  find_touching(ribbon, problem.touchable(), current, work.kinematics, work.search, work.touching);
   work.value.contact = touching_energy(ribbon, problem.touchable(), work.touching);
-  work.value.friction = friction_value(problem.contact, work.kinematics);
 }
 
 /// Kinematics and value of the trial; infinite where something would be in its way.
@@ -190,7 +62,6 @@ void value_trial(const Iterate& at) {
                                 work.trial_touching);
   work.trial_value.contact =
       free ? touching_energy(at.ribbon, touchable, work.trial_touching) : std::numeric_limits<double>::infinity();
-  work.trial_value.friction = friction_value(touchable.contact, work.trial_kinematics);
 }
 
 /// The trial becomes the iterate; loads are counted from here.
@@ -213,13 +84,6 @@ bool take_step(const Iterate& at, Chain& current, double scale, NewtonReport& re
   return true;
 }
 
-/// Do the rows hold to rounding, after the last step? They are not linear in it.
-bool rows_hold(const Iterate& at, const Chain& current, NewtonReport& report) {
-  constraint_residuals(at.ribbon, at.problem, current, at.work.kinematics, at.work.residuals);
-  report.max_residual = max_abs(at.work.residuals);
-  return report.max_residual <= kHeld * std::max(1.0, at.ribbon.length);
-}
-
 /// Backtracks along the step on the merit function; leaves the accepted point in the trial buffers.
 bool line_search(const Iterate& at, const Chain& chain, double start, double slope, double limit,
                  NewtonReport& report) {
@@ -230,7 +94,7 @@ bool line_search(const Iterate& at, const Chain& chain, double start, double slo
     value_trial(at);
     ++report.evaluations;
     constraint_residuals(at.ribbon, at.problem, work.trial, work.trial_kinematics, work.trial_residuals);
-    const double merit = at.merit(work.trial_value, work.trial_residuals);
+    const double merit = merit_of(work, work.trial_value, work.trial_residuals, at.emphasis);
     if (std::isfinite(merit) && merit <= start + 1e-4 * scale * slope + rounding) return true;
   }
   return false;
@@ -289,11 +153,6 @@ void kick(const Iterate& at, Chain& current) {
   }
 }
 
-/// Has friction been looked at closely, and does its exact Hessian do better than a majorant?
-bool is_settled(const NewtonReport& report) {
-  return report.iterations > kUnsettled || (report.iterations > 1 && report.last_step < kSettling);
-}
-
 /// What a stationary iterate is: a minimum (also where the softest mode is neutral, as in sliding along a closed
 /// band), a saddle, or a point that needs its last steps without a shift.
 enum class Stationary { no, minimum, saddle, unshift };
@@ -331,7 +190,6 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   work.system.geometric = true;
   Iterate at{ribbon, problem, work};
   double shift = 0;
-  int polished = 0;
   value_iterate(ribbon, problem, current, work);
   const auto accept = [&] {
     report.outcome = NewtonOutcome::converged;
@@ -343,40 +201,33 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   const bool conservative = problem.loads.empty();
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
-    work.touching.points.settled = !options.inertial || problem.contact.friction.empty() || is_settled(report);
     linearise(ribbon, problem, current, work.kinematics, lambda, work.touching, work.system);
-    if (options.inertial && conservative) use_torsion_chart(ribbon, current, work.system);
-    if (options.inertial && find_inertial_direction(ribbon, work, report)) {
-      shift = 0;
-    } else if (!find_direction(ribbon, conservative, work, report, shift)) {
+    if (!find_direction(ribbon, conservative, work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;
     }
+    report.last_step = 0;
     const double turn = measure_step(ribbon, work, report);
     const double limit = step_limit(ribbon, options, current, work, turn);
     constraint_residuals(ribbon, problem, current, work.kinematics, work.residuals);
     report.max_residual = max_abs(work.residuals);
-    // A shift makes steps short that are not the last ones.
-    const bool small = limit == 1 && report.last_step * (1 + shift) < options.tolerance &&
-                       report.max_residual < options.tolerance && work.touching.points.settled;
-    if (!conservative || (options.inertial && small)) {
-      // Nothing to descend on, or nothing left to gain: full Newton steps, as far as they are bounded.
-      if (small && !options.inertial) return accept();
+    if (!conservative) {
+      // Nothing to descend on: full Newton steps, as far as they are bounded. A shift makes steps short that are not
+      // the last ones.
+      const bool small = report.last_step * (1 + shift) < options.tolerance;
+      if (limit == 1 && small && report.max_residual < options.tolerance) return accept();
       if (!take_step(at, current, limit, report)) {
         report.outcome = NewtonOutcome::line_search_failed;
         return report;
       }
       lambda.assign(work.step.multiplier.begin() + static_cast<std::ptrdiff_t>(work.system.probe_count()),
                     work.step.multiplier.end());
-      // One step more where the rows ask for it: what they were held to would add up over the steps in time.
-      if (small && (rows_hold(at, current, report) || ++polished > 1)) return accept();
       continue;
     }
-    at.weigh_rows();
-    const double merit = at.merit(work.value, work.residuals);
-    const double slope = at.slope();
-    const Stationary kind =
-        options.inertial ? Stationary::no : classify(ribbon, options, shift, slope, merit, work, report);
+    at.emphasis = emphasis_of(infeasibility_of(work), slope_of(work, 1));
+    const double merit = merit_of(work, work.value, work.residuals, at.emphasis);
+    const double slope = slope_of(work, at.emphasis);
+    const Stationary kind = classify(ribbon, options, shift, slope, merit, work, report);
     if (kind == Stationary::minimum) return accept();
     if (kind == Stationary::unshift) {
       shift = 0;

@@ -1,4 +1,4 @@
-/// Newton's method with exact second-order checks on a chain problem.
+/// Newton's method of statics, with exact second-order checks, on a chain problem.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,6 @@ struct NewtonOptions {
   double tolerance = 1e-10;  ///< on the step: fold angles [rad], displacements / length
   int max_iterations = 300;
   double max_turn = 0.6;  ///< largest change of a fold angle in one iteration [rad]
-  bool inertial = false;  ///< masses tie the strip to where it was going: terms that carry forces are left out where
-                          ///< they would make the Hessian indefinite, and a step below the tolerance is taken and the
-                          ///< last one; whether it ends in a minimum or a saddle is not asked
 };
 
 enum class NewtonOutcome {
@@ -40,7 +37,7 @@ struct NewtonReport {
   bool converged() const { return outcome == NewtonOutcome::converged; }
 };
 
-/// Buffers of the solve; no allocation once they have their size.
+/// Buffers of the solve on one strip; no allocation once they have their size.
 struct NewtonWorkspace {
   math::ChainSystem system;
   math::ChainWorkspace sweep;
@@ -51,7 +48,6 @@ struct NewtonWorkspace {
   std::vector<double> residuals, trial_residuals;
   ObjectiveValue value, trial_value;
   Touching touching, trial_touching;
-  bool placed = false;  ///< the caller has found kinematics and contacts of the chain to start from; taken once
   SelfSearch search;
   std::vector<Vec2> load;  ///< right-hand side of the search for the softest mode
 };

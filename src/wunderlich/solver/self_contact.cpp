@@ -11,9 +11,8 @@ namespace wunderlich::solver {
 
 using contact::PairKind;
 using contact::PairPoints;
-using geometry::Chain;
-using geometry::Kinematics;
 using geometry::Ribbon;
+using Strips = std::span<const StripPlace>;
 
 namespace {
 
@@ -30,12 +29,18 @@ PairPoints points_of(const SelfPair& pair, const std::vector<Vec3>& corners) {
   return x;
 }
 
-/// A corner in the flat pattern, in a copy of the strip `lap` lengths further on.
-Vec3 flat(const Ribbon& ribbon, const SelfContact& problem, int corner, int lap) {
-  const auto node = static_cast<std::size_t>(corner / 2);
-  const double v = (corner % 2 == 0 ? -0.5 : 0.5) * ribbon.width;
-  const double turned = lap == 0 ? v : problem.flip * v;
-  return {ribbon.node_u[node] + v * problem.eta[node] + lap * problem.period, turned, 0};
+const SelfSurface& surface_of(const SelfContact& problem, int corner) {
+  std::size_t s = problem.surfaces.size() - 1;
+  while (problem.surfaces[s].first_corner > corner) --s;
+  return problem.surfaces[s];
+}
+
+const Vec3& flat(const SelfContact& problem, int corner) { return problem.flat[static_cast<std::size_t>(corner)]; }
+
+/// A corner in the flat pattern, in a copy of its strip `lap` lengths further on.
+Vec3 flat(const SelfContact& problem, const SelfSurface& surface, int corner, int lap) {
+  const Vec3& x = flat(problem, corner);
+  return lap == 0 ? x : Vec3(x.x() + lap * surface.period, surface.flip * x.y(), 0);
 }
 
 /// Corners of the first part of a pair: the vertex, or one edge.
@@ -53,16 +58,19 @@ bool share_a_corner(const SelfPair& pair) {
 
 /// Are both parts neighbours in the flat pattern? It tells them apart better than their numbers do: rims shrink to
 /// nothing where rulings meet.
-bool are_neighbours(const Ribbon& ribbon, const SelfContact& problem, const SelfPair& pair) {
+bool are_neighbours(const SelfContact& problem, const SelfPair& pair) {
   if (share_a_corner(pair)) return true;
   const double limit = kNeighbours * (problem.reach + problem.thickness);
-  const int first = first_count(pair.kind), laps = problem.period > 0 ? 1 : 0;
+  const int first = first_count(pair.kind);
+  const SelfSurface& surface = surface_of(problem, pair.corner[0]);
+  if (&surface != &surface_of(problem, pair.corner[3])) return false;
+  const int laps = surface.period > 0 ? 1 : 0;
   PairPoints x;
   for (int k = 0; k < 4; ++k)
-    x[static_cast<std::size_t>(k)] = flat(ribbon, problem, pair.corner[static_cast<std::size_t>(k)], 0);
+    x[static_cast<std::size_t>(k)] = flat(problem, pair.corner[static_cast<std::size_t>(k)]);
   for (int lap = -laps; lap <= laps; ++lap) {
     for (int k = first; k < 4 && laps > 0; ++k) {
-      x[static_cast<std::size_t>(k)] = flat(ribbon, problem, pair.corner[static_cast<std::size_t>(k)], lap);
+      x[static_cast<std::size_t>(k)] = flat(problem, surface, pair.corner[static_cast<std::size_t>(k)], lap);
     }
     double low[2] = {x[0].x(), x[3].x()}, high[2] = {x[0].x(), x[3].x()};
     for (int k = 1; k < 3; ++k) {
@@ -71,32 +79,30 @@ bool are_neighbours(const Ribbon& ribbon, const SelfContact& problem, const Self
       high[part] = std::max(high[part], x[static_cast<std::size_t>(k)].x());
     }
     const double apart = std::max(low[0] - high[1], low[1] - high[0]);
-    if (lap != 0 && apart < problem.open_seam) return true;
+    if (lap != 0 && apart < surface.open_seam) return true;
     if (apart > limit) continue;
     if (contact::pair_distance(pair.kind, x) <= limit) return true;
   }
   return false;
 }
 
-/// The surface's parts: corners, edges (rulings, then rims), triangles. A loop's seam is counted once.
-struct Parts {
-  int segments, nodes;
-  explicit Parts(const Ribbon& ribbon, const SelfContact& problem)
-      : segments(ribbon.segments), nodes(problem.period > 0 ? ribbon.segments : ribbon.segments + 1) {}
-  int corners() const { return 2 * nodes; }
-  int edges() const { return nodes + 2 * segments; }
-  int triangles() const { return 2 * segments; }
-  std::array<int, 2> edge(int k) const {
-    if (k < nodes) return {2 * k, 2 * k + 1};
-    const int side = (k - nodes) % 2, s = (k - nodes) / 2;
-    return {2 * s + side, 2 * s + 2 + side};
+/// Corners, edges (rulings, then rims) and triangles of all surfaces. A loop's seam is counted once.
+void find_parts(const SelfContact& problem, SelfSearch& search) {
+  search.corner_parts.clear(), search.edge_parts.clear(), search.triangle_parts.clear();
+  for (const SelfSurface& surface : problem.surfaces) {
+    const int nodes = surface.period > 0 ? surface.segments : surface.segments + 1;
+    for (int i = 0; i < nodes; ++i) {
+      const int c = surface.first_corner + 2 * i;
+      search.corner_parts.push_back(c), search.corner_parts.push_back(c + 1);
+      search.edge_parts.push_back({c, c + 1});
+    }
+    for (int s = 0; s < surface.segments; ++s) {
+      const int c = surface.first_corner + 2 * s;
+      search.edge_parts.push_back({c, c + 2}), search.edge_parts.push_back({c + 1, c + 3});
+      search.triangle_parts.push_back({c, c + 1, c + 3}), search.triangle_parts.push_back({c, c + 3, c + 2});
+    }
   }
-  std::array<int, 3> triangle(int k) const {
-    const int first = 2 * (k / 2);
-    return k % 2 == 0 ? std::array<int, 3>{first, first + 1, first + 3}
-                      : std::array<int, 3>{first, first + 3, first + 2};
-  }
-};
+}
 
 /// A box about some corners and about where they come from.
 template <std::size_t N>
@@ -111,44 +117,47 @@ contact::Extent extent(const std::array<int, N>& corners, const std::vector<Vec3
   return out;
 }
 
-void find_extents(const Parts& parts, const std::vector<Vec3>& from, const std::vector<Vec3>& to, double margin,
+void find_extents(const SelfContact& problem, const std::vector<Vec3>& from, const std::vector<Vec3>& to, double margin,
                   SelfSearch& search) {
+  find_parts(problem, search);
   search.corners.clear(), search.edges.clear(), search.triangles.clear();
-  for (int k = 0; k < parts.corners(); ++k) search.corners.push_back(extent<1>({k}, from, to, margin));
-  for (int k = 0; k < parts.edges(); ++k) search.edges.push_back(extent(parts.edge(k), from, to, margin));
-  for (int k = 0; k < parts.triangles(); ++k) search.triangles.push_back(extent(parts.triangle(k), from, to, margin));
+  for (const int corner : search.corner_parts) search.corners.push_back(extent<1>({corner}, from, to, margin));
+  for (const auto& edge : search.edge_parts) search.edges.push_back(extent(edge, from, to, margin));
+  for (const auto& triangle : search.triangle_parts) search.triangles.push_back(extent(triangle, from, to, margin));
 }
 
 /// All pairs that may come within reach on the way, but for neighbours.
-void find_candidates(const Ribbon& ribbon, const SelfContact& problem, const std::vector<Vec3>& from,
-                     const std::vector<Vec3>& to, SelfSearch& search) {
-  const Parts parts(ribbon, problem);
-  find_extents(parts, from, to, 0.5 * (problem.reach + problem.thickness), search);
+void find_candidates(const SelfContact& problem, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                     SelfSearch& search) {
+  find_extents(problem, from, to, 0.5 * (problem.reach + problem.thickness), search);
   const contact::Grid grid = contact::grid_over(search.triangles);
   contact::build_tree(search.corners, grid, search.corner_tree);
   contact::build_tree(search.edges, grid, search.edge_tree);
   contact::build_tree(search.triangles, grid, search.triangle_tree);
   search.candidates.clear();
   const auto take = [&](const SelfPair& pair) {
-    if (!are_neighbours(ribbon, problem, pair)) search.candidates.push_back(pair);
+    if (!are_neighbours(problem, pair)) search.candidates.push_back(pair);
   };
   contact::find_near(search.corner_tree, search.triangle_tree, search.near);
   for (const auto& [corner, triangle] : search.near) {
-    const auto t = parts.triangle(triangle);
-    take({PairKind::vertex_triangle, {corner, t[0], t[1], t[2]}});
+    const auto& t = search.triangle_parts[static_cast<std::size_t>(triangle)];
+    take({PairKind::vertex_triangle, {search.corner_parts[static_cast<std::size_t>(corner)], t[0], t[1], t[2]}});
   }
   contact::find_near(search.edge_tree, search.near);
   for (const auto& [a, b] : search.near) {
-    const auto ea = parts.edge(a), eb = parts.edge(b);
+    const auto& ea = search.edge_parts[static_cast<std::size_t>(a)];
+    const auto& eb = search.edge_parts[static_cast<std::size_t>(b)];
     take({PairKind::edge_edge, {ea[0], ea[1], eb[0], eb[1]}});
   }
 }
 
-void find_corners(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::vector<Vec3>& corners) {
+void find_corners(Strips strips, std::vector<Vec3>& corners) {
   corners.clear();
-  for (std::size_t i = 0; i < chain.eta.size(); ++i) {
-    const Vec3 ruling = k.frame[i].col(1) + chain.eta[i] * k.frame[i].col(2);
-    for (const double v : {-0.5 * ribbon.width, 0.5 * ribbon.width}) corners.push_back(k.r[i] + v * ruling);
+  for (const auto& [ribbon, chain, k] : strips) {
+    for (std::size_t i = 0; i < chain.eta.size(); ++i) {
+      const Vec3 ruling = k.frame[i].col(1) + chain.eta[i] * k.frame[i].col(2);
+      for (const double v : {-0.5 * ribbon.width, 0.5 * ribbon.width}) corners.push_back(k.r[i] + v * ruling);
+    }
   }
 }
 
@@ -161,10 +170,10 @@ void select(const SelfContact& problem, const std::vector<SelfPair>& candidates,
   }
 }
 
-contact::Gap gap_of(const Ribbon& ribbon, const SelfContact& problem, const SelfPair& pair) {
+contact::Gap gap_of(const SelfContact& problem, const SelfPair& pair) {
   const auto length = [&](int a, int b) {
-    return (flat(ribbon, problem, pair.corner[static_cast<std::size_t>(a)], 0) -
-            flat(ribbon, problem, pair.corner[static_cast<std::size_t>(b)], 0))
+    return (flat(problem, pair.corner[static_cast<std::size_t>(a)]) -
+            flat(problem, pair.corner[static_cast<std::size_t>(b)]))
         .squaredNorm();
   };
   const double parallel = pair.kind == PairKind::edge_edge ? kParallel * length(0, 1) * length(2, 3) : 0;
@@ -215,6 +224,28 @@ struct Gather {
   }
 };
 
+using Systems = std::span<math::ChainSystem* const>;
+
+/// Where a corner is among the points of its chain.
+struct PointPlace {
+  int chain = -1, point = -1;
+};
+
+PointPlace add_point(Strips strips, const SelfContact& problem, const SelfContacts& contacts, int corner,
+                     const std::vector<Vec3>& force, Systems systems) {
+  const SelfSurface& surface = surface_of(problem, corner);
+  const auto chain = static_cast<std::size_t>(&surface - problem.surfaces.data());
+  const int node = (corner - surface.first_corner) / 2;
+  const auto& [ribbon, rulings, k] = strips[chain];
+  const auto i = static_cast<std::size_t>(node);
+  const double v = (corner % 2 == 0 ? -0.5 : 0.5) * ribbon.width;
+  const Vec3 slant = geometry::eta_is_free(ribbon, node) ? Vec3(v * k.frame[i].col(2)) : Vec3::Zero();
+  auto& points = systems[chain]->points;
+  const auto at = static_cast<std::size_t>(corner);
+  points.push_back({node, contacts.corners[at] - k.r[i], slant, force[at]});
+  return {static_cast<int>(chain), static_cast<int>(points.size()) - 1};
+}
+
 }  // namespace
 
 void place_self(const Ribbon& loop, const constraint::Surroundings& surroundings, double reach, bool closed,
@@ -225,26 +256,43 @@ void place_self(const Ribbon& loop, const constraint::Surroundings& surroundings
   problem.thickness = contact.thickness;
   const double weight = loop.area_density * surroundings.gravity.norm() * loop.width * loop.length / loop.segments;
   problem.stiffness = std::max(kBending * loop.bending_stiffness / loop.width, kWeight * weight) / problem.reach;
-  problem.period = loop.is_loop() ? loop.length : 0;
-  problem.flip = loop.is_loop() ? loop.seam_sign() : 1;
-  problem.open_seam = loop.is_loop() && !closed ? kOpenSeam * loop.width : 0;
-  problem.eta = eta;
+  SelfSurface surface;
+  surface.segments = loop.segments;
+  surface.period = loop.is_loop() ? loop.length : 0;
+  surface.flip = loop.is_loop() ? loop.seam_sign() : 1;
+  surface.open_seam = loop.is_loop() && !closed ? kOpenSeam * loop.width : 0;
+  problem.surfaces.assign(1, surface);
+  problem.flat.clear();
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    for (const double v : {-0.5 * loop.width, 0.5 * loop.width}) {
+      problem.flat.emplace_back(loop.node_u[i] + v * eta[i], v, 0);
+    }
+  }
 }
 
-void find_pairs(const Ribbon& ribbon, const SelfContact& problem, const Chain& chain, const Kinematics& kinematics,
-                SelfSearch& search, SelfContacts& contacts) {
-  find_corners(ribbon, chain, kinematics, contacts.corners);
-  find_candidates(ribbon, problem, contacts.corners, contacts.corners, search);
+void place_beside(const SelfContact& other, SelfContact& all) {
+  all.reach = all.surfaces.empty() ? other.reach : std::min(all.reach, other.reach);
+  all.thickness = std::max(all.thickness, other.thickness);
+  all.stiffness = std::max(all.stiffness, other.stiffness);
+  for (SelfSurface surface : other.surfaces) {
+    surface.first_corner += static_cast<int>(all.flat.size());
+    all.surfaces.push_back(surface);
+  }
+  all.flat.insert(all.flat.end(), other.flat.begin(), other.flat.end());
+}
+
+void find_pairs(Strips strips, const SelfContact& problem, SelfSearch& search, SelfContacts& contacts) {
+  find_corners(strips, contacts.corners);
+  find_candidates(problem, contacts.corners, contacts.corners, search);
   select(problem, search.candidates, contacts);
 }
 
-bool travel(const Ribbon& ribbon, const SelfContact& problem, const SelfContacts& from, const Chain& chain,
-            const Kinematics& kinematics, SelfSearch& search, SelfContacts& to) {
-  find_corners(ribbon, chain, kinematics, to.corners);
+bool travel(Strips strips, const SelfContact& problem, const SelfContacts& from, SelfSearch& search, SelfContacts& to) {
+  find_corners(strips, to.corners);
   for (const Vec3& corner : to.corners) {
     if (!corner.allFinite()) return false;
   }
-  find_candidates(ribbon, problem, from.corners, to.corners, search);
+  find_candidates(problem, from.corners, to.corners, search);
   for (const SelfPair& pair : search.candidates) {
     if (!may_go(problem, points_of(pair, from.corners), points_of(pair, to.corners), pair.kind)) return false;
   }
@@ -252,22 +300,23 @@ bool travel(const Ribbon& ribbon, const SelfContact& problem, const SelfContacts
   return true;
 }
 
-double self_energy(const Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts) {
+double self_energy(const SelfContact& problem, const SelfContacts& contacts) {
   double sum = 0;
   for (const SelfPair& pair : contacts.pairs) {
-    sum += contact::pair_value(pair.kind, points_of(pair, contacts.corners), gap_of(ribbon, problem, pair));
+    sum += contact::pair_value(pair.kind, points_of(pair, contacts.corners), gap_of(problem, pair));
   }
   return problem.stiffness * sum;
 }
 
-void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Kinematics& k,
-                      const SelfContacts& contacts, math::ChainSystem& system) {
+void add_self_contact(Strips strips, const SelfContact& problem, const SelfContacts& contacts, Systems systems,
+                      std::vector<math::ChainCoupling>& between) {
+  between.clear();
   if (contacts.pairs.empty()) return;
   Gather gather;
   std::vector<Vec3> force(contacts.corners.size(), Vec3::Zero());
   for (const SelfPair& pair : contacts.pairs) {
     const PairPoints x = points_of(pair, contacts.corners);
-    const contact::PairEnergy e = contact::pair_energy(pair.kind, x, gap_of(ribbon, problem, pair));
+    const contact::PairEnergy e = contact::pair_energy(pair.kind, x, gap_of(problem, pair));
     const contact::Mat12 stiff = problem.stiffness * e.second * e.along * e.along.transpose();
     const contact::Mat12 whole = problem.stiffness * e.hessian;
     gather.add(pair, stiff, whole - stiff);
@@ -277,20 +326,19 @@ void add_self_contact(const Ribbon& ribbon, const SelfContact& problem, const Ki
     }
   }
   gather.merge();
-  std::vector<int> point(contacts.corners.size(), -1);
+  std::vector<PointPlace> place(contacts.corners.size());
   for (const Gather::Block& block : gather.blocks) {
     if (block.a != block.b) continue;  // each corner has a block with itself
-    const auto corner = static_cast<std::size_t>(block.a);
-    const std::size_t node = corner / 2;
-    const double v = (corner % 2 == 0 ? -0.5 : 0.5) * ribbon.width;
-    const bool turns = geometry::eta_is_free(ribbon, static_cast<int>(node));
-    point[corner] = static_cast<int>(system.points.size());
-    system.points.push_back({static_cast<int>(node), contacts.corners[corner] - k.r[node],
-                             turns ? Vec3(v * k.frame[node].col(2)) : Vec3::Zero(), force[corner]});
+    place[static_cast<std::size_t>(block.a)] = add_point(strips, problem, contacts, block.a, force, systems);
   }
   for (const Gather::Block& block : gather.blocks) {
-    system.couplings.push_back({point[static_cast<std::size_t>(block.a)], point[static_cast<std::size_t>(block.b)],
-                                block.hessian, block.geometric});
+    const PointPlace a = place[static_cast<std::size_t>(block.a)], b = place[static_cast<std::size_t>(block.b)];
+    const math::PointCoupling coupling{a.point, b.point, block.hessian, block.geometric};
+    if (a.chain == b.chain) {
+      systems[static_cast<std::size_t>(a.chain)]->couplings.push_back(coupling);
+    } else {
+      between.push_back({{a.chain, b.chain}, coupling});
+    }
   }
 }
 
@@ -302,21 +350,19 @@ double smallest_distance(const SelfContact& problem, const SelfContacts& contact
   return least;
 }
 
-int count_crossings(const Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts,
-                    SelfSearch& search) {
-  const Parts parts(ribbon, problem);
-  find_extents(parts, contacts.corners, contacts.corners, 0, search);
+int count_crossings(const SelfContact& problem, const SelfContacts& contacts, SelfSearch& search) {
+  find_extents(problem, contacts.corners, contacts.corners, 0, search);
   const contact::Grid grid = contact::grid_over(search.triangles);
   contact::build_tree(search.edges, grid, search.edge_tree);
   contact::build_tree(search.triangles, grid, search.triangle_tree);
   contact::find_near(search.edge_tree, search.triangle_tree, search.near);
   int count = 0;
   for (const auto& [edge, triangle] : search.near) {
-    const auto e = parts.edge(edge);
-    const auto t = parts.triangle(triangle);
+    const auto& e = search.edge_parts[static_cast<std::size_t>(edge)];
+    const auto& t = search.triangle_parts[static_cast<std::size_t>(triangle)];
     const SelfPair first{PairKind::vertex_triangle, {e[0], t[0], t[1], t[2]}};
     const SelfPair second{PairKind::vertex_triangle, {e[1], t[0], t[1], t[2]}};
-    if (are_neighbours(ribbon, problem, first) || are_neighbours(ribbon, problem, second)) continue;
+    if (are_neighbours(problem, first) || are_neighbours(problem, second)) continue;
     const auto at = [&](int corner) -> const Vec3& { return contacts.corners[static_cast<std::size_t>(corner)]; };
     count += contact::pierces(at(e[0]), at(e[1]), at(t[0]), at(t[1]), at(t[2])) ? 1 : 0;
   }

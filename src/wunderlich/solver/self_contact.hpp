@@ -1,10 +1,13 @@
-/// Contact of a strip with itself: corners against facets and edges against edges, kept apart by a barrier.
+/// Contact of strips with themselves and with one another: corners against facets and edges against edges, kept apart
+/// by a barrier.
 ///
-/// Corners are the ends of the rulings, r + v (d2 + eta d3) with v = -w/2, w/2: corner 2i + side of node i. Between
-/// them facets are flat, two triangles each, and edges straight, so that pairs of these are all there is to look at.
+/// Corners are the ends of the rulings, r + v (d2 + eta d3) with v = -w/2, w/2: corner 2i + side of node i, those of a
+/// further strip after those of the strips before it. Between them facets are flat, two triangles each, and edges
+/// straight, so that pairs of these are all there is to look at.
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "wunderlich/constraint/support.hpp"
@@ -15,15 +18,29 @@
 
 namespace wunderlich::solver {
 
-/// How a strip feels itself during one minimisation.
+/// A strip as it lies.
+struct StripPlace {
+  const geometry::Ribbon& ribbon;
+  const geometry::Chain& chain;
+  const geometry::Kinematics& kinematics;
+};
+
+/// The surface of one strip among others.
+struct SelfSurface {
+  int first_corner = 0;
+  int segments = 0;
+  double period = 0;     ///< loops: their length [m]
+  double flip = 1;       ///< loops: -1 where the seam turns the surface over
+  double open_seam = 0;  ///< length about the seam of a loop that is not closed yet, whose sides do not touch [m]
+};
+
+/// How strips feel themselves and one another during one minimisation.
 struct SelfContact {
-  double reach = 0;         ///< gap at which forces begin [m]; 0: it does not feel itself
-  double thickness = 0;     ///< that stays between two parts of the middle surface [m]
-  double stiffness = 0;     ///< of a pair's barrier [N/m]
-  double period = 0;        ///< loops: their length [m]
-  double flip = 1;          ///< loops: -1 where the seam turns the surface over
-  double open_seam = 0;     ///< length about the seam of a loop that is not closed yet, whose sides do not touch [m]
-  std::vector<double> eta;  ///< rulings of the flat pattern that neighbours are told by
+  double reach = 0;      ///< gap at which forces begin [m]; 0: they do not
+  double thickness = 0;  ///< that stays between two parts of the middle surfaces [m]
+  double stiffness = 0;  ///< of a pair's barrier [N/m]
+  std::vector<SelfSurface> surfaces;
+  std::vector<Vec3> flat;  ///< corners in the flat pattern of their own strip, which tells who is whose neighbour
   bool active() const { return reach > 0; }
 };
 
@@ -35,12 +52,15 @@ struct SelfPair {
 
 /// Where the corners are, and the pairs within reach.
 struct SelfContacts {
-  std::vector<Vec3> corners;  ///< (2 (segments + 1))
+  std::vector<Vec3> corners;  ///< (2 (segments + 1)) of each strip
   std::vector<SelfPair> pairs;
 };
 
 /// Buffers of the search.
 struct SelfSearch {
+  std::vector<int> corner_parts;  ///< the parts that boxes are drawn about, by their corners
+  std::vector<std::array<int, 2>> edge_parts;
+  std::vector<std::array<int, 3>> triangle_parts;
   std::vector<contact::Extent> corners, edges, triangles;
   contact::ExtentTree corner_tree, edge_tree, triangle_tree;
   std::vector<contact::Near> near;
@@ -52,27 +72,29 @@ struct SelfSearch {
 void place_self(const geometry::Ribbon& loop, const constraint::Surroundings& surroundings, double reach, bool closed,
                 const std::vector<double>& eta, SelfContact& problem);
 
-/// Corners and pairs of a strip at rest.
-void find_pairs(const geometry::Ribbon& ribbon, const SelfContact& problem, const geometry::Chain& chain,
-                const geometry::Kinematics& kinematics, SelfSearch& search, SelfContacts& contacts);
+/// A further strip beside those that are there. What they do to one another is as stiff as the stiffer of them.
+void place_beside(const SelfContact& other, SelfContact& all);
+
+/// Corners and pairs of strips at rest.
+void find_pairs(std::span<const StripPlace> strips, const SelfContact& problem, SelfSearch& search,
+                SelfContacts& contacts);
 
 /// The same at the end of a way, on which corners go straight. False if something would pass through something, or if a
 /// gap would lose more than nine tenths of what it was within reach; then `to` is not complete.
-bool travel(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& from,
-            const geometry::Chain& chain, const geometry::Kinematics& kinematics, SelfSearch& search, SelfContacts& to);
+bool travel(std::span<const StripPlace> strips, const SelfContact& problem, const SelfContacts& from,
+            SelfSearch& search, SelfContacts& to);
 
 /// Energy of the barrier [J].
-double self_energy(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts);
+double self_energy(const SelfContact& problem, const SelfContacts& contacts);
 
-/// Adds its derivatives.
-void add_self_contact(const geometry::Ribbon& ribbon, const SelfContact& problem,
-                      const geometry::Kinematics& kinematics, const SelfContacts& contacts, math::ChainSystem& system);
+/// Adds its derivatives: to the strips' own systems, and to `between` what points of two strips do to each other.
+void add_self_contact(std::span<const StripPlace> strips, const SelfContact& problem, const SelfContacts& contacts,
+                      std::span<math::ChainSystem* const> systems, std::vector<math::ChainCoupling>& between);
 
 /// Smallest distance of parts that are not neighbours, beyond the thickness [m]; `reach` where none is nearer.
 double smallest_distance(const SelfContact& problem, const SelfContacts& contacts);
 
 /// How many edges go through facets that are not their neighbours'. A barrier does not see what is so from the start.
-int count_crossings(const geometry::Ribbon& ribbon, const SelfContact& problem, const SelfContacts& contacts,
-                    SelfSearch& search);
+int count_crossings(const SelfContact& problem, const SelfContacts& contacts, SelfSearch& search);
 
 }  // namespace wunderlich::solver

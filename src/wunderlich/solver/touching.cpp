@@ -10,8 +10,9 @@ using geometry::Ribbon;
 
 void find_touching(const Ribbon& ribbon, const Touchable& problem, const Chain& chain, const Kinematics& kinematics,
                    SelfSearch& search, Touching& touching) {
+  const StripPlace place{ribbon, chain, kinematics};
   touching.points.clear();
-  if (problem.self.active()) find_pairs(ribbon, problem.self, chain, kinematics, search, touching.self);
+  if (problem.self.active()) find_pairs({&place, 1}, problem.self, search, touching.self);
   if (!problem.contact.empty()) find_points(ribbon, problem.contact, chain, kinematics, touching.points);
 }
 
@@ -22,12 +23,13 @@ bool go_touching(const Ribbon& ribbon, const Touchable& problem, const Touching&
     find_points(ribbon, problem.contact, chain, kinematics, to.points);
     if (!may_go(problem.contact, from.points, to.points)) return false;
   }
-  return !problem.self.active() || travel(ribbon, problem.self, from.self, chain, kinematics, search, to.self);
+  const StripPlace place{ribbon, chain, kinematics};
+  return !problem.self.active() || travel({&place, 1}, problem.self, from.self, search, to.self);
 }
 
 double touching_energy(const Ribbon& ribbon, const Touchable& problem, const Touching& touching) {
   double energy = 0;
-  if (problem.self.active()) energy += self_energy(ribbon, problem.self, touching.self);
+  if (problem.self.active()) energy += self_energy(problem.self, touching.self);
   if (!problem.contact.empty()) energy += contact_energy(ribbon, problem.contact, touching.points);
   return energy;
 }

@@ -1,4 +1,4 @@
-/// All that a chain touches: solids, and its own parts.
+/// All that one chain alone touches: solids, and its own parts.
 #pragma once
 
 #include "wunderlich/solver/chain_contact.hpp"

@@ -15,20 +15,20 @@ namespace {
 double late_share(const Scheme& scheme) { return scheme.kind == Integrator::bdf2 ? 0.5 : 1 - scheme.alpha_f; }
 
 /// Of what moves the supports. Euler takes the reactions after for the whole step.
-double support_work(const ChainProblem& problem, const Scheme& scheme, const State& state, const Chain& start,
-                    const Workspace& work, const std::vector<double>& residuals) {
+double support_work(const Scheme& scheme, const StripState& state, const math::Vec6& base_reaction,
+                    const StripWorkspace& work) {
   const double after = late_share(scheme);
   double sum = 0;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
+  for (std::size_t i = 0; i < work.residuals.size(); ++i) {
     const double before = i < state.path.multipliers.size() ? state.path.multipliers[i] : work.multipliers[i];
-    sum += ((1 - after) * before + after * work.multipliers[i]) * residuals[i];
+    sum += ((1 - after) * before + after * work.multipliers[i]) * work.residuals[i];
   }
   math::Vec6 way;
-  way << start.base.position - state.path.chain.base.position,
-      math::log_map(start.base.frame * state.path.chain.base.frame.conjugate());
-  const math::Vec6 reaction = (1 - after) * state.base_reaction + after * work.newton.sweep.base_gradient;
+  way << work.start.base.position - state.path.chain.base.position,
+      math::log_map(work.start.base.frame * state.path.chain.base.frame.conjugate());
+  const math::Vec6 reaction = (1 - after) * state.base_reaction + after * base_reaction;
   for (int c = 0; c < 6; ++c) {
-    if (problem.base_fixed[static_cast<std::size_t>(c)]) sum += reaction[c] * way[c];
+    if (work.problem.base_fixed[static_cast<std::size_t>(c)]) sum += reaction[c] * way[c];
   }
   return sum;
 }
@@ -57,14 +57,23 @@ void find_held(const Ribbon& ribbon, const Options& options, const ChainProblem&
 
 }  // namespace
 
-double work_done(const Ribbon& ribbon, const Scheme& scheme, const State& state, const Workspace& work) {
-  return load_work(work.problem, state.points.x, work.x) + friction_work(work.problem.contact, work.newton.kinematics) +
-         support_work(work.problem, scheme, state, work.start, work, work.residuals) +
-         solid_work(ribbon, work.solids, work.before.points, work.problem.contact, work.newton.touching.points,
-                    late_share(scheme));
+double work_done(Paths paths, const Scheme& scheme, const State& state, const Workspace& work) {
+  double sum = 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const StripWorkspace& own = work.strips[i];
+    const NewtonWorkspace& newton = work.newton.strips[i];
+    sum += load_work(own.problem, state.strips[i].points.x, own.x) +
+           friction_work(own.problem.contact, newton.kinematics) +
+           support_work(scheme, state.strips[i], newton.sweep.base_gradient, own) +
+           solid_work(paths[i].ribbon, own.solids, own.before, own.problem.contact, newton.touching.points,
+                      late_share(scheme));
+  }
+  return sum;
 }
 
-void keep_conserved(const Ribbon& ribbon, const Options& options, double growth, State& state, Workspace& work) {
+void keep_conserved(const Ribbon& ribbon, const Options& options, double growth, State& all, Workspace& workspace) {
+  StripState& state = all.strips.front();
+  StripWorkspace& work = workspace.strips.front();
   const ChainProblem& problem = work.problem;
   const auto& fixed = problem.base_fixed;
   const bool held = !problem.holds.empty() || std::any_of(fixed.begin(), fixed.end(), [](bool is) { return is; });
@@ -72,10 +81,10 @@ void keep_conserved(const Ribbon& ribbon, const Options& options, double growth,
       !problem.loads.empty() || !problem.contact.empty() || options.drag_tangent > 0 || options.drag_normal > 0 ||
       std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return !f.isZero(0); });
   Conserved wanted;
-  wanted.kinetic = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta) - growth + state.missing;
+  wanted.kinetic = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta) - growth + all.missing;
   if (!held && !pushed) wanted.momentum = &state.momentum;
   find_held(ribbon, options, problem, work.conserve.held);
-  state.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.conserve, work.points);
+  all.missing = conserve(ribbon, options.kinetic, work.trial.eta, wanted, work.conserve, work.points);
   if (wanted.momentum == nullptr) state.momentum = momentum(ribbon, options.kinetic, work.points, work.trial.eta);
 }
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/solver/chain_ties.hpp"
 #include "wunderlich/solver/implicit/balance.hpp"
+#include "wunderlich/solver/implicit/beginning.hpp"
 #include "wunderlich/solver/load_step.hpp"
 #include "wunderlich/solver/path_step.hpp"
 
@@ -26,8 +28,6 @@ constexpr int kInelastic = kDampingLevels;  // beyond those: Euler's
 constexpr int kShortened = 2;               // halvings of a step that may be inelastic
 constexpr double kProbe = 0.02;             // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
-constexpr double kFlat = 1e-4;       // curvature over 1/length that counts as none
-constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
 
 /// Time in which a wave of bending crosses the strip.
 double own_time(const Ribbon& ribbon) {
@@ -48,83 +48,8 @@ Scheme scheme_of(const Options& options, const State& state, double h) {
   return make_scheme(options.integrator, kRho[static_cast<std::size_t>(state.level)], h, state.last_step);
 }
 
-/// Joint coordinates carried on as in the last step; less far where rulings would meet.
-void predict(const Ribbon& ribbon, const State& state, double h, Chain& chain) {
-  chain = state.path.chain;
-  if (state.last_step == 0) return;
-  const Chain& now = state.path.chain;
-  double share = h / state.last_step;
-  for (std::size_t s = 0; s + 1 < now.eta.size(); ++s) {
-    const double k = 0.5 * ribbon.width / ribbon.rest_length[s];
-    const double x = k * (now.eta[s + 1] - now.eta[s]);
-    const double dx = x - k * (state.before.eta[s + 1] - state.before.eta[s]);
-    const double room = kBoundaryFraction * (dx > 0 ? 1 - x : 1 + x);
-    if (share * std::abs(dx) > room) share = room / std::abs(dx);
-  }
-  for (std::size_t i = 0; i < now.kappa.size(); ++i) {
-    chain.kappa[i] += share * (now.kappa[i] - state.before.kappa[i]);
-    chain.eta[i] += share * (now.eta[i] - state.before.eta[i]);
-  }
-  const Vec3 turn = math::log_map(now.base.frame * state.before.base.frame.conjugate());
-  chain.base.position += share * (now.base.position - state.before.base.position);
-  chain.base.frame = math::exp_map(share * turn) * now.base.frame;
-}
-
-/// What is held of the base is where it is held.
-void keep_held(const ChainProblem& problem, const Pose& held, Pose& base) {
-  for (int c = 0; c < 3; ++c) {
-    if (problem.base_fixed[static_cast<std::size_t>(c)]) base.position[c] = held.position[c];
-  }
-  if (problem.base_fixed[3]) base.frame = held.frame;
-}
-
-/// Where Newton's method may start: the prediction if nothing is in its way, or else where the strip is, or where a
-/// moving solid would carry it. False if something is in the way of all these. Says what rubs as well.
-bool start_clear(const PathProblem& path, const State& state, double h, Workspace& work) {
-  const Ribbon& ribbon = path.ribbon;
-  ContactProblem& contact = work.problem.contact;
-  if (work.problem.touchable().empty()) return true;
-  place_solids(ribbon, path.surroundings, state.path.t, work.solids);
-  geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
-  const Touchable touchable{work.solids, work.problem.self};
-  find_touching(ribbon, touchable, state.path.chain, work.kinematics, work.newton.search, work.before);
-  set_friction(ribbon, work.solids, work.before.points, state.path.chain, work.kinematics, h, contact);
-  const auto is_clear = [&](const Chain& chain) {
-    geometry::forward_kinematics(ribbon, chain, work.newton.kinematics);
-    NewtonWorkspace& newton = work.newton;
-    return newton.placed = go_touching(ribbon, work.problem.touchable(), work.before, chain, newton.kinematics,
-                                       newton.search, newton.touching);
-  };
-  if (is_clear(work.trial)) return true;
-  const Pose held = work.trial.base;
-  work.trial = state.path.chain;
-  keep_held(work.problem, held, work.trial.base);
-  if (is_clear(work.trial)) return true;
-  for (std::size_t i = 0; i < contact.solids.size(); ++i) {
-    const Pose &from = work.solids.solids[i].pose, &to = contact.solids[i].pose;
-    const Quat turn = to.frame * from.frame.conjugate();
-    work.trial.base.position = to.position + turn * (state.path.chain.base.position - from.position);
-    work.trial.base.frame = turn * state.path.chain.base.frame;
-    keep_held(work.problem, held, work.trial.base);
-    if (is_clear(work.trial)) return true;
-  }
-  return false;
-}
-
-/// Supports, loads and inertia of a step that ends at t1; `chain` gets its prescribed base.
-void set_problem(const PathProblem& path, const Options& options, const Scheme& scheme, double t1, const State& state,
-                 Chain& chain, ChainProblem& problem) {
-  problem_at(path, state.path, t1, chain, problem);
-  problem.barrier = options.barrier;
-  if (path.surroundings.supports.empty()) problem.base_fixed.fill(false);
-  tie(path.ribbon, options.kinetic, scheme, state.points, state.path.chain.eta, problem);
-  problem.viscosity = options.viscosity / scheme.h;
-  problem.before = options.viscosity > 0 ? &state.path.chain : nullptr;
-}
-
 NewtonOptions newton_options(const Options& options) {
   NewtonOptions newton;
-  newton.inertial = true;
   newton.tolerance = options.tolerance;
   newton.max_iterations = options.max_iterations;
   return newton;
@@ -181,10 +106,13 @@ bool can_damp(const Options& options, const State& state, int halvings) {
 }
 
 /// Length of a step that finds accelerations: short against the strip's own time, long against rounding.
-double probe_step(const PathProblem& path, const State& state) {
-  const double segment = path.ribbon.length / path.ribbon.segments, g = path.surroundings.gravity.norm();
-  double h = kProbe * own_time(path.ribbon) / path.ribbon.segments;
-  if (g > 0) h = std::min(h, kProbeShare * std::sqrt(segment / g));
+double probe_step(Paths paths, const State& state) {
+  double h = std::numeric_limits<double>::infinity();
+  for (const PathProblem& path : paths) {
+    const double segment = path.ribbon.length / path.ribbon.segments, g = path.surroundings.gravity.norm();
+    h = std::min(h, kProbe * own_time(path.ribbon) / path.ribbon.segments);
+    if (g > 0) h = std::min(h, kProbeShare * std::sqrt(segment / g));
+  }
   if (state.last_step > 0) h = std::min(h, kProbeShare * state.last_step);
   return h;
 }
@@ -211,11 +139,9 @@ void float_freely(const Ribbon& ribbon, const ChainProblem& problem, Chain& chai
   }
 }
 
-}  // namespace
-
-State start(const PathProblem& path, const Options& options, const geometry::State& shape, const Vec3& spin,
-            Workspace& work) {
-  State state;
+StripState start_strip(const PathProblem& path, const Options& options, const geometry::State& shape, const Vec3& spin,
+                       StripWorkspace& work) {
+  StripState state;
   state.path.phase = Phase::load;
   state.path.closed = path.ribbon.is_loop();
   state.path.t = shape.time;
@@ -231,47 +157,84 @@ State start(const PathProblem& path, const Options& options, const geometry::Sta
   for (std::size_t i = n + 1; i < state.points.v.size(); ++i) state.points.v[i] = spin.cross(state.points.x[i]);
   work.problem = ChainProblem();
   problem_at(path, state.path, shape.time, state.path.chain, work.problem);  // its base where the support has it
-  state.peak = kinetic_energy(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
-  find_accelerations(path, options, state, work);
   return state;
 }
 
-void find_accelerations(const PathProblem& path, const Options& options, State& state, Workspace& work) {
-  // A short Euler step that is thrown away.
-  const double h = probe_step(path, state);
-  const Scheme scheme = make_scheme(Integrator::euler, 0, h, 0);
-  work.trial = state.path.chain;
-  set_problem(path, options, scheme, state.path.t + h, state, work.trial, work.problem);
-  work.problem.viscosity = 0;
-  // The hinge of a clamp that has let go took its energy along.
-  geometry::forward_kinematics(path.ribbon, state.path.chain, work.kinematics);
-  const ObjectiveValue now = objective(path.ribbon, work.problem, state.path.chain, work.kinematics, work.kinematics);
-  state.elastic = now.elastic + now.barrier;
-  place_solids(path.ribbon, path.surroundings, state.path.t, work.solids);
-  const Touchable touchable{work.solids, work.problem.self};
-  find_touching(path.ribbon, touchable, state.path.chain, work.kinematics, work.newton.search, work.before);
-  state.elastic += touching_energy(path.ribbon, touchable, work.before);
-  state.momentum = momentum(path.ribbon, options.kinetic, state.points, state.path.chain.eta);
-  state.base_reaction.setZero();
-  work.multipliers.assign(row_count(work.problem), 0.0);
-  NewtonOptions newton = newton_options(options);
-  newton.tolerance = 1e-10;
-  state.last_step = 0;
-  state.path.multipliers.clear();
-  std::fill(state.points.a.begin(), state.points.a.end(), Vec3::Zero());
-  state.points.acceleration = state.points.a;
-  const NewtonReport report = minimise(path.ribbon, work.problem, newton, work.trial, work.multipliers, work.newton);
-  if (!report.converged()) return;  // from rest, then
-  read_points(path.ribbon, options.kinetic, work.newton.kinematics, work.x);
-  for (std::size_t i = 0; i < work.x.size(); ++i) {
-    state.points.acceleration[i] = scheme.stiffness * (work.x[i] - anchor(scheme, state.points, i));
-    state.points.a[i] = state.points.acceleration[i];
+double kinetic_energy(Paths paths, const Options& options, const State& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const StripState& strip = state.strips[i];
+    sum += kinetic_energy(paths[i].ribbon, options.kinetic, strip.points, strip.path.chain.eta);
   }
-  state.path.multipliers = work.multipliers;
-  state.base_reaction = work.newton.sweep.base_gradient;
+  return sum;
 }
 
-void change_supports(const PathProblem& before, const PathProblem& after, State& state) {
+/// Of the strips as they lie, barriers and contact included.
+double elastic_now(Paths paths, const State& state, Workspace& work) {
+  find_contacts(paths, state, work);
+  double sum = work.self.active() ? self_energy(work.self, work.self_before) : 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const StripWorkspace& own = work.strips[i];
+    const Chain& chain = state.strips[i].path.chain;
+    const ObjectiveValue now = objective(paths[i].ribbon, own.problem, chain, own.kinematics, own.kinematics);
+    sum += now.elastic + now.barrier;
+    if (!own.solids.empty()) sum += contact_energy(paths[i].ribbon, own.solids, own.before);
+  }
+  return sum;
+}
+
+}  // namespace
+
+State start(Paths paths, const Options& options, std::span<const geometry::State> shapes, std::span<const Vec3> spins,
+            Workspace& work) {
+  State state;
+  work.strips.resize(paths.size());
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    state.strips.push_back(start_strip(paths[i], options, shapes[i], spins[i], work.strips[i]));
+  }
+  state.peak = kinetic_energy(paths, options, state);
+  find_accelerations(paths, options, state, work);
+  return state;
+}
+
+void find_accelerations(Paths paths, const Options& options, State& state, Workspace& work) {
+  // A short Euler step that is thrown away.
+  work.strips.resize(paths.size());
+  const double h = probe_step(paths, state);
+  const Scheme scheme = make_scheme(Integrator::euler, 0, h, 0);
+  for (std::size_t i = 0; i < paths.size(); ++i) work.strips[i].trial = state.strips[i].path.chain;
+  set_problems(paths, options, scheme, state.time() + h, state, work);
+  for (StripWorkspace& own : work.strips) own.problem.viscosity = 0;
+  // The hinge of a clamp that has let go took its energy along.
+  state.elastic = elastic_now(paths, state, work);
+  state.last_step = 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    StripState& strip = state.strips[i];
+    strip.momentum = momentum(paths[i].ribbon, options.kinetic, strip.points, strip.path.chain.eta);
+    strip.base_reaction.setZero();
+    strip.path.multipliers.clear();
+    std::fill(strip.points.a.begin(), strip.points.a.end(), Vec3::Zero());
+    strip.points.acceleration = strip.points.a;
+    work.strips[i].multipliers.assign(row_count(work.strips[i].problem), 0.0);
+  }
+  NewtonOptions newton = newton_options(options);
+  newton.tolerance = 1e-10;
+  const NewtonReport report = minimise(moving(paths, work), work.self, newton, work.newton);
+  if (!report.converged()) return;  // from rest, then
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    StripState& strip = state.strips[k];
+    StripWorkspace& own = work.strips[k];
+    read_points(paths[k].ribbon, options.kinetic, work.newton.strips[k].kinematics, own.x);
+    for (std::size_t i = 0; i < own.x.size(); ++i) {
+      strip.points.acceleration[i] = scheme.stiffness * (own.x[i] - anchor(scheme, strip.points, i));
+      strip.points.a[i] = strip.points.acceleration[i];
+    }
+    strip.path.multipliers = own.multipliers;
+    strip.base_reaction = work.newton.strips[k].sweep.base_gradient;
+  }
+}
+
+void change_supports(const PathProblem& before, const PathProblem& after, StripState& state) {
   const auto convert = [&](Chain& chain) {
     chain = geometry::chain_of(after.ribbon, geometry::state_of(before.ribbon, chain, 0));
     if (after.ribbon.is_loop()) chain.eta.back() = after.ribbon.seam_sign() * chain.eta.front();
@@ -283,101 +246,125 @@ void change_supports(const PathProblem& before, const PathProblem& after, State&
 
 namespace {
 
-/// The problem of a step, and the prediction that Newton's method starts from.
-void prepare(const PathProblem& path, const Options& options, const Scheme& scheme, double t1, const State& state,
-             Workspace& work) {
-  const Ribbon& ribbon = path.ribbon;
-  predict(ribbon, state, scheme.h, work.trial);
-  // Between two held places a flat strip has no direction to go in: Newton's method starts beside it.
-  if (path.surroundings.supports.size() > 1 && is_flat(work.trial, ribbon.length, kFlat)) seed(ribbon, work.trial);
-  set_problem(path, options, scheme, t1, state, work.trial, work.problem);
-  work.multipliers = state.path.multipliers;
-  work.multipliers.resize(row_count(work.problem), 0.0);
-  // How far the supports have moved: the rows' residuals before the step.
-  work.start = state.path.chain;
-  work.start.base = work.trial.base;
-  if (!work.multipliers.empty()) geometry::forward_kinematics(ribbon, state.path.chain, work.kinematics);
-  constraint_residuals(ribbon, work.problem, state.path.chain, work.kinematics, work.residuals);
+/// Positions and velocities at the end of a step that has converged: the largest local error over the length, and the
+/// kinetic energy.
+struct End {
+  double error = 0, kinetic = 0;
+};
+
+End finish_strips(Paths paths, const Options& options, const Scheme& scheme, const State& state, Workspace& work) {
+  End end;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const Ribbon& ribbon = paths[i].ribbon;
+    const StripState& strip = state.strips[i];
+    StripWorkspace& own = work.strips[i];
+    geometry::Kinematics& k = work.newton.strips[i].kinematics;
+    if (!work.self.active()) float_freely(ribbon, own.problem, own.trial, k);
+    read_points(ribbon, options.kinetic, k, own.x);
+    own.points = strip.points;
+    end.error = std::max(end.error, finish(scheme, own.x, own.points) / ribbon.length);
+    end.kinetic += kinetic_energy(ribbon, options.kinetic, own.points, strip.path.chain.eta);
+  }
+  return end;
+}
+
+/// The end of the step becomes the state.
+void move_on(Paths paths, const Options& options, double t1, const StepReport& report, State& state, Workspace& work) {
+  const double h = t1 - state.time();
+  state.last_step = h;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    StripState& strip = state.strips[i];
+    StripWorkspace& own = work.strips[i];
+    strip.before = strip.path.chain;
+    std::swap(strip.path.chain, own.trial);
+    std::swap(strip.path.multipliers, own.multipliers);
+    std::swap(strip.points, own.points);
+    strip.base_reaction = work.newton.strips[i].sweep.base_gradient;
+    strip.path.t = t1;
+    ++strip.path.steps;
+    strip.path.iterations += report.iterations;
+    if (carries_frames(paths[i])) note_frames(paths[i], strip.path);
+    drag(paths[i].ribbon, options, h, work.newton.strips[i].kinematics, strip.points);
+  }
+}
+
+/// Smallest distances at the end of the step, and how much is felt.
+void report_contact(const Workspace& work, StepReport& report) {
+  for (std::size_t i = 0; i < work.strips.size(); ++i) {
+    const ContactPoints& points = work.newton.strips[i].touching.points;
+    report.nearest = std::min(report.nearest, smallest_distance(work.strips[i].problem.contact, points));
+    report.touching += contact_count(points);
+  }
+  if (!work.self.active()) return;
+  report.nearest = std::min(report.nearest, smallest_distance(work.self, work.newton.self));
+  report.touching += static_cast<int>(work.newton.self.pairs.size());
 }
 
 }  // namespace
 
-StepReport step(const PathProblem& path, const Options& options, double t1, int halvings, State& state,
-                Workspace& work) {
-  const Ribbon& ribbon = path.ribbon;
-  const double h = t1 - state.path.t;
+StepReport step(Paths paths, const Options& options, double t1, int halvings, State& state, Workspace& work) {
+  const double h = t1 - state.time();
   StepReport report;
   const int level = state.level;
-  const double kinetic0 = kinetic_energy(ribbon, options.kinetic, state.points, state.path.chain.eta);
-  double growth = 0;  // of the energy, beyond the work of loads and supports
+  const double kinetic0 = kinetic_energy(paths, options, state);
+  double own_energies = 0;
+  for (const PathProblem& path : paths) own_energies += own_energy(path.ribbon);
+  bool loaded = false;  // without a potential
+  double growth = 0;    // of the energy, beyond the work of loads and supports
+  const auto fail = [&](const std::string& failure) {
+    state.level = level;
+    report.failure = failure;
+    return report;
+  };
   for (;; state.level = damp_more(options, state.level), ++report.repeats) {
     const Scheme scheme = scheme_of(options, state, h);
-    prepare(path, options, scheme, t1, state, work);
-    if (!start_clear(path, state, h, work)) {
-      state.level = level;
-      report.failure = "a solid runs into the strip within a step of " + std::to_string(h) + " s";
-      return report;
+    prepare(paths, options, scheme, t1, state, work);
+    if (!start_clear(paths, state, h, work)) {
+      return fail("something runs into the strip within a step of " + std::to_string(h) + " s");
     }
-    report.newton = minimise(ribbon, work.problem, newton_options(options), work.trial, work.multipliers, work.newton);
+    report.newton = minimise(moving(paths, work), work.self, newton_options(options), work.newton);
     report.iterations += report.newton.iterations;
-    if (!report.newton.converged()) {
-      state.level = level;
-      report.failure = why(report.newton, t1, h);
-      return report;
-    }
-    float_freely(ribbon, work.problem, work.trial, work.newton.kinematics);
-    read_points(ribbon, options.kinetic, work.newton.kinematics, work.x);
-    work.points = state.points;
-    report.error = finish(scheme, work.x, work.points) / ribbon.length;
-    const double kinetic1 = kinetic_energy(ribbon, options.kinetic, work.points, state.path.chain.eta);
+    if (!report.newton.converged()) return fail(why(report.newton, t1, h));
+    const End end = finish_strips(paths, options, scheme, state, work);
+    report.error = end.error;
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
-    growth = elastic1 - state.elastic + kinetic1 - kinetic0 - work_done(ribbon, scheme, state, work);
-    const double peak = std::max(state.peak, kinetic1);
-    const bool grows = work.problem.loads.empty() && !(growth <= kGrowth * peak + kLeastGrowth * own_energy(ribbon));
+    growth = elastic1 - state.elastic + end.kinetic - kinetic0 - work_done(paths, scheme, state, work);
+    const double peak = std::max(state.peak, end.kinetic);
+    loaded = std::any_of(work.strips.begin(), work.strips.end(),
+                         [](const StripWorkspace& own) { return !own.problem.loads.empty(); });
+    const bool grows = !loaded && !(growth <= kGrowth * peak + kLeastGrowth * own_energies);
     if (grows && can_damp(options, state, halvings)) continue;
+    if (grows) {
+      return fail("the energy grows by " + std::to_string(growth / peak) +
+                  " of the largest kinetic energy in a step of " + std::to_string(h) + " s");
+    }
     // What an impulse changes at once is no error of the step's length.
-    const bool coarse = options.error > 0 && report.error > options.error && state.level != kInelastic;
-    if (grows || coarse) {
-      state.level = level;
-      report.failure = grows ? "the energy grows by " + std::to_string(growth / peak) +
-                                   " of the largest kinetic energy in a step of " + std::to_string(h) + " s"
-                             : "local error " + std::to_string(report.error);
-      return report;
+    if (options.error > 0 && report.error > options.error && state.level != kInelastic) {
+      return fail("local error " + std::to_string(report.error));
     }
     state.peak = peak;
     state.elastic = elastic1;
     break;
   }
   // The work of loads without a potential is not known, and what friction takes is gone.
-  const bool known = work.problem.loads.empty() && work.problem.contact.friction.empty();
-  if (options.conserve && known) keep_conserved(ribbon, options, growth, state, work);
+  const bool known = paths.size() == 1 && !loaded && work.strips.front().problem.contact.friction.empty();
+  if (options.conserve && known) keep_conserved(paths.front().ribbon, options, growth, state, work);
   state.calm = report.repeats > 0 ? 0 : std::min(state.calm, kCalmSteps) + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;
-  state.before = state.path.chain;
-  state.last_step = h;
-  std::swap(state.path.chain, work.trial);
-  std::swap(state.path.multipliers, work.multipliers);
-  std::swap(state.points, work.points);
-  state.base_reaction = work.newton.sweep.base_gradient;
-  state.path.t = t1;
-  ++state.path.steps;
-  state.path.iterations += report.iterations;
-  if (carries_frames(path)) note_frames(path, state.path);
-  drag(ribbon, options, h, work.newton.kinematics, state.points);
-  report.nearest = std::min(report.nearest, smallest_distance(work.problem.touchable(), work.newton.touching));
-  report.touching = contact_count(work.problem.touchable(), work.newton.touching);
+  move_on(paths, options, t1, report, state, work);
+  report_contact(work, report);
   report.inelastic = state.level == kInelastic;
   if (report.inelastic) {  // the accelerations of an impulse are nothing to go on with
     state.level = level;
-    find_accelerations(path, options, state, work);
+    find_accelerations(paths, options, state, work);
   }
   report.accepted = true;
   return report;
 }
 
-geometry::State shape_of(const PathProblem& path, const State& state) {
-  geometry::State shape = geometry::state_of(path.ribbon, state.path.chain, state.path.t);
-  for (std::size_t i = 0; i < shape.r.size(); ++i) shape.r_dot[i] = state.points.v[i];
+geometry::State shape_of(const PathProblem& path, const StripState& strip) {
+  geometry::State shape = geometry::state_of(path.ribbon, strip.path.chain, strip.path.t);
+  for (std::size_t i = 0; i < shape.r.size(); ++i) shape.r_dot[i] = strip.points.v[i];
   return shape;
 }
 

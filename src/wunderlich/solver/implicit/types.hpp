@@ -20,23 +20,30 @@ struct Options {
   double drag_tangent = 0;  ///< rate [1/s] at which the velocity along the tangent decays, as in air
   double drag_normal = 0;   ///< the same across it
   double viscosity = 0;     ///< of the material: time by which stress lags behind bending (Kelvin-Voigt) [s]
-  bool conserve = false;    ///< correct the velocities so that energy, and momenta of a free strip, are kept exactly
+  bool conserve = false;    ///< correct the velocities so that energy, and momenta of a free strip, are kept exactly;
+                            ///< of one strip alone
   double error = 0;         ///< local error of a step that is accepted, over the length; 0: any
+};
+
+/// One strip of a motion.
+struct StripState {
+  PathState path;  ///< joint coordinates, multipliers, carried frames; phase `load`, t the time [s]
+  Points points;
+  geometry::Chain before;                         ///< joint coordinates a step earlier, for the prediction
+  Momentum momentum;                              ///< `conserve`: at the start
+  math::Vec6 base_reaction = math::Vec6::Zero();  ///< of a held base: force and torque
 };
 
 /// What a checkpoint must hold for a run to go on bit for bit.
 struct State {
-  PathState path;  ///< joint coordinates, multipliers, carried frames; phase `load`, t the time [s]
-  Points points;
-  geometry::Chain before;                         ///< joint coordinates a step earlier, for the prediction
-  double last_step = 0;                           ///< [s]; 0 before the first, and after a release or an impulse
-  int level = 0;                                  ///< of damping: 0 ... kDampingLevels - 1
-  int calm = 0;                                   ///< steps since it was raised
-  double elastic = 0;                             ///< energy with all barriers, now [J]
-  double peak = 0;                                ///< largest kinetic energy so far [J]
-  double missing = 0;                             ///< `conserve`: energy that is still to be put right [J]
-  Momentum momentum;                              ///< `conserve`: at the start
-  math::Vec6 base_reaction = math::Vec6::Zero();  ///< of a held base: force and torque
+  std::vector<StripState> strips;
+  double last_step = 0;  ///< [s]; 0 before the first, and after a release or an impulse
+  int level = 0;         ///< of damping: 0 ... kDampingLevels - 1
+  int calm = 0;          ///< steps since it was raised
+  double elastic = 0;    ///< energy with all barriers, now [J]
+  double peak = 0;       ///< largest kinetic energy so far [J]
+  double missing = 0;    ///< `conserve`: energy that is still to be put right [J]
+  double time() const { return strips.front().path.t; }
 };
 
 struct StepReport {
@@ -46,8 +53,8 @@ struct StepReport {
   int iterations = 0;      ///< of all
   int repeats = 0;         ///< minimisations thrown away, because the energy grew
   bool inelastic = false;  ///< taken by Euler: an impulse, of a support that starts or a strip that comes taut
-  double nearest = 1e9;    ///< distance of the nearest point to a solid [m]
-  int touching = 0;        ///< points that feel a solid
+  double nearest = 1e9;    ///< distance of the nearest point to a solid, or of two parts of strips [m]
+  int touching = 0;        ///< points and pairs that feel something
   double error = 0;        ///< estimate of the local error over the length
 };
 
