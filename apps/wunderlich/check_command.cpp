@@ -12,11 +12,14 @@ namespace wunderlich::app {
 int check_command(const std::string& scene_name, const std::vector<std::string>& set) {
   const scene::Scene scene = scene::read_scene(scene_name, set);
   scene::check_start(scene);
-  const bool loop = scene.ribbon.closure == geometry::Closure::loop;
-  std::cout << fmt::format("{}: ok: {}, {} segments, l/w = {:g}, {} supports, {} loads\n", scene.name,
-                           loop ? "a loop" : "an open strip", scene.ribbon.segments,
-                           scene.ribbon.length / scene.ribbon.width, scene.surroundings.supports.size(),
-                           scene.surroundings.loads.size());
+  for (const scene::Scene* strip : scene::strips_of(scene)) {
+    const bool loop = strip->ribbon.closure == geometry::Closure::loop;
+    const std::string name = strip->ribbon_name.empty() ? "" : " ribbon `" + strip->ribbon_name + "`:";
+    std::cout << fmt::format("{}: ok:{} {}, {} segments, l/w = {:g}, {} supports, {} loads\n", scene.name, name,
+                             loop ? "a loop" : "an open strip", strip->ribbon.segments,
+                             strip->ribbon.length / strip->ribbon.width, strip->surroundings.supports.size(),
+                             strip->surroundings.loads.size());
+  }
   return done;
 }
 

@@ -121,7 +121,8 @@ void fly(implicit::KineticEnergy kinetic, bool conserve) {
     shape.r_dot[i] = Vec3(0.3, -0.5, 0.2) + spin.cross(shape.r[i] - middle);
   start(shape, spin, m);
   const auto momentum = [&] {
-    return implicit::momentum(m.path.ribbon, m.options.kinetic, m.state.strips[0].points, m.state.strips[0].path.chain.eta);
+    return implicit::momentum(m.path.ribbon, m.options.kinetic, m.state.strips[0].points,
+                              m.state.strips[0].path.chain.eta);
   };
   const implicit::Momentum before = momentum();
   double linear = 0, angular = 0;

@@ -134,7 +134,8 @@ double ring_frequency(double w, KineticEnergy kinetic, int segments) {
   for (std::size_t s = 0; n + 1 + s < m.state.strips[0].points.v.size(); ++s) {
     const double theta = 2 * kPi * (static_cast<double>(s) + 0.5) / segments;
     const Mat3 frame = shape.q[s].toRotationMatrix();
-    m.state.strips[0].points.v[n + 1 + s] = speed * (std::cos(k * theta) * frame.col(2) - k * std::sin(k * theta) * frame.col(0));
+    m.state.strips[0].points.v[n + 1 + s] =
+        speed * (std::cos(k * theta) * frame.col(2) - k * std::sin(k * theta) * frame.col(0));
   }
   implicit::find_accelerations(implicit::Paths(&m.path, 1), m.options, m.state, m.work);
   const double expected = ring_theory(w, kinetic);

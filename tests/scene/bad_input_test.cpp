@@ -21,11 +21,32 @@ TEST(BadInput, UnknownKeysNameThePlaceAndTheNearMiss) {
   expect_all(message_of(strip + "clamps.*.at: start\n"), {"unknown key"});
 }
 
-TEST(BadInput, KeysOfLaterVersionsAreNotTypingErrors) {
-  expect_all(message_of(strip + "ribbons: []"), {"bad.yaml:2:", "not supported yet by this version"});
+TEST(BadInput, ChoicesNameWhatThereIs) {
   expect_all(message_of(strip + "solver: {method: newton}"),
              {"`newton` is not allowed", "must be one of implicit, two-stage, equilibrium"});
   expect_all(message_of(strip + "solver: {energy: wunderlick}"), {"did you mean `wunderlich`?", "truncated, sadowsky"});
+}
+
+TEST(BadInput, SeveralRibbons) {
+  const std::string two = "ribbons:\n  - {length: 2, width: 0.5}\n  - {length: 2, width: 0.5}\n";
+  EXPECT_EQ(message_of(two), "accepted");
+  expect_all(message_of("ribbons: []"), {"bad.yaml:1:", "ribbons: has no entry"});
+  expect_all(message_of(strip + two), {"bad.yaml:1:", "ribbon: contradicts `ribbons`"});
+  expect_all(message_of(two + "clamps: [{at: start}]"),
+             {"bad.yaml:4:", "clamps: of which strip?", "entry of `ribbons`"});
+  expect_all(message_of(two + "solver: {method: equilibrium}"),
+             {"bad.yaml:2:", "ribbons: several", "`solver.method: implicit`"});
+  expect_all(message_of(two + "solver: {conserve: true}"), {"bad.yaml:4:", "solver.conserve: is for one strip alone"});
+  expect_all(message_of("ribbons:\n  - {length: 2, width: 0.5}\n  - {width: 0.5}\n"),
+             {"bad.yaml:3:", "ribbons.1.length: is missing"});
+  expect_all(message_of("ribbons:\n  - {length: 2, width: x}\n"), {"bad.yaml:2:", "ribbons.0.width: `x`"});
+  expect_all(message_of("ribbons:\n  - {length: 2, width: 0.5, colour: red}\n"),
+             {"bad.yaml:2:", "ribbons.0.colour: unknown key"});
+  expect_all(message_of("ribbons:\n  - {length: 2, width: 0.5, clamps: [{at: {u: 3}}]}\n"),
+             {"bad.yaml:2:", "ribbons.0.clamps.0.at.u", "beyond the strip"});
+  expect_all(
+      message_of("ribbons:\n  - {length: 2, width: 0.5, clamps: [{at: start}], initial: {position: [0, 0, 1]}}\n"),
+      {"bad.yaml:2:", "ribbons.0.initial.position", "no effect with `clamps`"});
 }
 
 TEST(BadInput, SelfContactOfLoadsWithoutAPotential) {

@@ -164,6 +164,39 @@ TEST(ReadScene, AnEndThatKeepsItsTangentFreeHasAFrameOfItsOwn) {
   EXPECT_EQ(scene.surroundings.supports.at(1).node, 4);
 }
 
+TEST(ReadScene, SeveralRibbonsEachHaveTheirOwn) {
+  const Scene scene = read(R"(
+ribbons:
+  - {name: first, length: 2, width: 0.5, segments: 4, clamps: [{at: start}], forces: [{at: end, force: [0, 0, 1]}]}
+  - {length: 3, width: 0.1, segments: 6, initial: {position: [0, 1, 2], tangent: [0, 1, 0], velocity: [1, 0, 0]}}
+gravity: [0, 0, -9.81]
+obstacles: [{shape: plane, position: [0, 0, -1]}]
+contact: {self: true, distance: 0.01}
+)");
+  const std::vector<const Scene*> strips = strips_of(scene);
+  ASSERT_EQ(strips.size(), 2u);
+  EXPECT_EQ(strips[0]->ribbon_name, "first");
+  EXPECT_EQ(strips[1]->ribbon_name, "2");
+  EXPECT_EQ(strips[0]->ribbon.segments, 4);
+  EXPECT_EQ(strips[1]->ribbon.segments, 6);
+  EXPECT_EQ(strips[0]->surroundings.supports.size(), 1u);
+  EXPECT_EQ(strips[0]->surroundings.loads.size(), 1u);
+  EXPECT_TRUE(strips[1]->surroundings.supports.empty());
+  EXPECT_TRUE(strips[1]->surroundings.loads.empty());
+  ASSERT_TRUE(strips[1]->initial.place);
+  EXPECT_EQ(strips[1]->initial.place->position, Vec3(0, 1, 2));
+  EXPECT_NEAR((strips[1]->initial.place->frame * Vec3::UnitZ() - Vec3::UnitY()).norm(), 0, 1e-15);
+  EXPECT_EQ(strips[1]->initial.velocity, Vec3(1, 0, 0));
+  for (const Scene* strip : strips) {  // what surrounds them is common
+    EXPECT_EQ(strip->surroundings.gravity, Vec3(0, 0, -9.81));
+    EXPECT_EQ(strip->surroundings.obstacles.size(), 1u);
+    EXPECT_EQ(strip->surroundings.contact.distance, 0.01);
+    EXPECT_TRUE(strip->surroundings.contact.self);
+  }
+  EXPECT_EQ(read(scene.resolved).beside.size(), 1u);
+  EXPECT_EQ(read(scene.resolved, {"ribbons.1.segments=9"}).beside.front().ribbon.segments, 9);
+}
+
 TEST(ReadScene, ReadsAFile) {
   const auto path = std::filesystem::path(testing::TempDir()) / "wunderlich-read-test.yaml";
   std::ofstream(path) << "\xef\xbb\xbf" << plain;

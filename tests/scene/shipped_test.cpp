@@ -26,10 +26,26 @@ std::string contents(const std::filesystem::path& path) {
 TEST(ShippedScenes, AreThoseOfTheContract) {
   std::set<std::string> names;
   for (const ShippedScene& scene : shipped_scenes()) names.insert(scene.name);
-  for (const char* name :
-       {"moebius", "figure-eight", "twist-pi", "twist-clamped", "cantilever", "buckled-strip", "ring", "helix", "swing",
-        "whip", "drape-cylinder", "slide-cylinder", "loop-2pi", "pile", "belt", "belt-release-stiff",
-        "belt-release-soft", "twist-release-stiff", "twist-release-soft"}) {
+  for (const char* name : {"moebius",
+                           "figure-eight",
+                           "twist-pi",
+                           "twist-clamped",
+                           "cantilever",
+                           "buckled-strip",
+                           "ring",
+                           "helix",
+                           "swing",
+                           "whip",
+                           "drape-cylinder",
+                           "slide-cylinder",
+                           "loop-2pi",
+                           "pile",
+                           "paper-chain",
+                           "belt",
+                           "belt-release-stiff",
+                           "belt-release-soft",
+                           "twist-release-stiff",
+                           "twist-release-soft"}) {
     EXPECT_TRUE(names.count(name)) << name;
   }
 }

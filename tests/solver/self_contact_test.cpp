@@ -8,6 +8,7 @@
 #include <random>
 
 #include "solver/paths.hpp"
+#include "support/crossings.hpp"
 #include "wunderlich/geometry/topology.hpp"
 #include "wunderlich/math/rotation.hpp"
 
@@ -67,45 +68,75 @@ std::vector<solver::StripPlace> alone(const geometry::Ribbon& ribbon, const Chai
   return {{ribbon, chain, k}};
 }
 
+/// Value of coils, gradient and Newton's step, one behind the other.
 struct Linear {
-  double value;
+  double value = 0;
   VectorXd gradient, step;
 };
 
-Linear linear(const Coil& coil, const Chain& chain) {
-  Kinematics k, start;  // loads are counted from the coil as it was
-  geometry::forward_kinematics(coil.ribbon, chain, k);
-  geometry::forward_kinematics(coil.ribbon, coil.chain, start);
-  solver::Touching touching;
+Linear linear(const std::vector<Coil>& coils, const std::vector<Chain>& chains) {
+  const std::size_t count = coils.size();
+  std::vector<Kinematics> k(count), start(count);  // loads are counted from the coils as they were
+  std::vector<math::ChainSystem> systems(count);
+  std::vector<math::ChainWorkspace> works(count);
+  std::vector<math::ChainStep> steps(count);
+  std::vector<math::ChainSystem*> pointers;
+  std::vector<math::ChainPart> parts;
+  std::vector<solver::StripPlace> places;
+  solver::SelfContact self;
+  Linear out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Coil& coil = coils[i];
+    geometry::forward_kinematics(coil.ribbon, chains[i], k[i]);
+    geometry::forward_kinematics(coil.ribbon, coil.chain, start[i]);
+    place_beside(coil.problem.self, self);
+    places.push_back({coil.ribbon, chains[i], k[i]});
+    pointers.push_back(&systems[i]);
+    parts.push_back({&systems[i], &works[i], &steps[i]});
+    linearise(coil.ribbon, coil.problem, chains[i], k[i], {}, {}, systems[i]);
+    out.value += objective(coil.ribbon, coil.problem, chains[i], k[i], start[i]).total();
+  }
   solver::SelfSearch search;
-  find_pairs(alone(coil.ribbon, chain, k), coil.problem.self, search, touching.self);
-  EXPECT_GT(touching.self.pairs.size(), 20u);
-  math::ChainSystem system;
-  math::ChainWorkspace work;
-  math::ChainStep step;
-  linearise(coil.ribbon, coil.problem, chain, k, {}, touching, system);
-  EXPECT_TRUE(chain_step(system, work, step));
-  Linear out{objective(coil.ribbon, coil.problem, chain, k, start).total() +
-                 self_energy(coil.problem.self, touching.self),
-             VectorXd(2 * coil.ribbon.node_count()), VectorXd(2 * coil.ribbon.node_count())};
-  for (std::size_t i = 0; i < work.gradient.size(); ++i) {
-    out.gradient.segment<2>(2 * static_cast<Index>(i)) = work.gradient[i];
-    out.step.segment<2>(2 * static_cast<Index>(i)) = step.u[i];
+  solver::SelfContacts contacts;
+  std::vector<math::ChainCoupling> between;
+  find_pairs(places, self, search, contacts);
+  EXPECT_GT(contacts.pairs.size(), 20u);
+  add_self_contact(places, self, contacts, pointers, between);
+  EXPECT_EQ(between.empty(), count == 1);
+  EXPECT_TRUE(chain_steps(parts, between));
+  out.value += self_energy(self, contacts);
+  const Index size = 2 * coils.front().ribbon.node_count();
+  out.gradient.resize(size * static_cast<Index>(count));
+  out.step = out.gradient;
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t i = 0; i < works[c].gradient.size(); ++i) {
+      const Index at = static_cast<Index>(c) * size + 2 * static_cast<Index>(i);
+      out.gradient.segment<2>(at) = works[c].gradient[i];
+      out.step.segment<2>(at) = steps[c].u[i];
+    }
   }
   return out;
 }
 
 /// Central differences over a step so short that hardly a pair changes what is nearest in it: there its second
 /// derivative jumps, so that the order of an error would say little.
-TEST(SelfContact, GradientIsTheSlopeAndHessianItsDerivative) {
-  const Coil coil;
-  const Linear here = linear(coil, coil.chain);
+void expect_derivatives(const std::vector<Coil>& coils) {
+  const auto at = [&](double h, const VectorXd& way) {
+    std::vector<Chain> chains;
+    const Index size = way.size() / static_cast<Index>(coils.size());
+    for (std::size_t c = 0; c < coils.size(); ++c) {
+      chains.push_back(moved(coils[c].chain, h * way.segment(static_cast<Index>(c) * size, size)));
+    }
+    return linear(coils, chains);
+  };
+  const Index size = 2 * coils.front().ribbon.node_count();
+  const auto count = static_cast<Index>(coils.size());
+  const Linear here = at(0, VectorXd::Zero(size * count));
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
-  VectorXd d = VectorXd::NullaryExpr(here.gradient.size(), [&] { return normal(random); });
-  for (int i : {0, coil.ribbon.segments}) d[2 * i] = 0;  // free ends do not fold
+  VectorXd d = VectorXd::NullaryExpr(size * count, [&] { return normal(random); });
+  for (Index c = 0; c < count; ++c) d[c * size] = d[(c + 1) * size - 2] = 0;  // free ends do not fold
   constexpr double kStep = 1e-6;
-  const auto at = [&](double h, const VectorXd& way) { return linear(coil, moved(coil.chain, h * way)); };
   const double slope = (at(kStep, d).value - at(-kStep, d).value) / (2 * kStep);
   EXPECT_GT(std::abs(slope), 1);
   EXPECT_NEAR(here.gradient.dot(d) / slope, 1, 1e-6);
@@ -116,7 +147,15 @@ TEST(SelfContact, GradientIsTheSlopeAndHessianItsDerivative) {
   EXPECT_LT((bend * here.step.norm() + here.gradient).norm(), 1e-5 * here.gradient.norm());
 }
 
-/// A way that ends on the far side of another part of the strip is seen, however long it is.
+TEST(SelfContact, GradientIsTheSlopeAndHessianItsDerivative) { expect_derivatives({Coil()}); }
+
+/// Two coils, the turns of one between those of the other.
+TEST(SelfContact, OfTwoStripsAsWell) {
+  std::vector<Coil> coils(2);
+  coils[1].chain.base.position += Vec3(0.05, 0.03, 0.12);
+  expect_derivatives(coils);
+}
+
 TEST(SelfContact, NothingIsLeaptOver) {
   geometry::RibbonSpec spec;
   spec.length = 2;
@@ -140,38 +179,11 @@ TEST(SelfContact, NothingIsLeaptOver) {
   EXPECT_FALSE(travel(alone(ribbon, closed, k), self, from, search, to));
 }
 
-/// Do an edge and a triangle meet? Apart from the solver's test: by where the line meets the plane.
-bool pierces(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  Mat3 m;
-  m << p - q, b - a, c - a;
-  if (std::abs(m.determinant()) < 1e-14) return false;
-  const Vec3 x = m.inverse() * (p - a);
-  return x[0] >= 0 && x[0] <= 1 && x[1] >= 0 && x[2] >= 0 && x[1] + x[2] <= 1;
-}
-
-/// Places where facets more than two apart go through each other, by trying all of them.
-int crossings(const Ribbon& ribbon, const Chain& chain, bool loop) {
+/// Places where a loop goes through itself, also before its ends have been joined.
+int crossings_of(const solver::PathProblem& path, const solver::PathState& state) {
   Kinematics k;
-  geometry::forward_kinematics(ribbon, chain, k);
-  const int n = ribbon.segments;
-  const auto corner = [&](int node, int side) -> Vec3 {
-    const auto i = static_cast<std::size_t>(node);
-    const double v = (side - 0.5) * ribbon.width;
-    return k.r[i] + v * (k.frame[i].col(1) + chain.eta[i] * k.frame[i].col(2));
-  };
-  int count = 0;
-  for (int s = 0; s < n; ++s) {
-    const Vec3 c[4] = {corner(s, 0), corner(s, 1), corner(s + 1, 1), corner(s + 1, 0)};
-    for (int t = 0; t < n; ++t) {
-      const int apart = std::min(std::abs(s - t), loop ? n - std::abs(s - t) : n);
-      if (apart <= 2) continue;
-      const Vec3 e[4] = {corner(t, 0), corner(t, 1), corner(t + 1, 1), corner(t + 1, 0)};
-      for (int i = 0; i < 4; ++i) {
-        count += pierces(e[i], e[(i + 1) % 4], c[0], c[1], c[2]) || pierces(e[i], e[(i + 1) % 4], c[0], c[2], c[3]);
-      }
-    }
-  }
-  return count;
+  geometry::forward_kinematics(ribbon_of(path, state), state.chain, k);
+  return crossings(alone(path.ribbon, state.chain, k));
 }
 
 geometry::RibbonSpec loop(int segments, int half_twists) {
@@ -198,7 +210,7 @@ TEST(SelfContact, ALoopOfAWholeTurnBecomesAZero) {
     while (state.phase != solver::Phase::done) {
       const solver::PathStep step = advance(path, state, work);
       ASSERT_TRUE(step.accepted) << step.failure;
-      ASSERT_EQ(crossings(ribbon_of(path, state), state.chain, true), 0) << phase_name(state.phase) << " " << state.t;
+      ASSERT_EQ(crossings_of(path, state), 0) << phase_name(state.phase) << " " << state.t;
     }
     const double energy = solver::elastic_energy(path.ribbon, options.model, state.chain);
     const double value = energy * 2 * kPi / 0.4, error = value / 56.908 - 1;

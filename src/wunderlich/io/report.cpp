@@ -188,9 +188,8 @@ Json report_json(const RunOutput& output) {
   data["mesh"] = mesh_json(frames.front()->surface, begin);
   data["bodies"] = Json::array();
   for (const Body& body : output.bodies) data["bodies"].push_back(body_json(body, output.frames, frames));
-  data["u"] = column(frames.front()->centerline, [&](const CenterlineSample& s) {
-    return begin[static_cast<std::size_t>(s.ribbon)] + s.u;
-  });
+  data["u"] = column(frames.front()->centerline,
+                     [&](const CenterlineSample& s) { return begin[static_cast<std::size_t>(s.ribbon)] + s.u; });
   data["frames"] = Json::array();
   for (const Frame* frame : frames) data["frames"].push_back(frame_json(*frame, cube, strips));
   return data;

@@ -19,8 +19,8 @@ struct RunOutput {
   std::string title;  ///< one line about the scene
   Summary summary;
   std::vector<HistoryRow> history;
-  std::vector<Frame> frames;  ///< at least one; the last is the final state
-  std::vector<Body> bodies;   ///< obstacles
+  std::vector<Frame> frames;          ///< at least one; the last is the final state
+  std::vector<Body> bodies;           ///< obstacles
   std::vector<FlatPattern> patterns;  ///< of the final state, one a strip; at least one
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides

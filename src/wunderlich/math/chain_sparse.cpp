@@ -190,9 +190,8 @@ bool sparse_chain_step(const ChainSystem& system, ChainWorkspace& work, ChainSte
 
 bool chain_steps(Parts chains, const Couplings& couplings) {
   if (!couplings.empty()) return sparse_chain_steps(chains, couplings);
-  return std::all_of(chains.begin(), chains.end(), [](const ChainPart& chain) {
-    return chain_step(*chain.system, *chain.work, *chain.step);
-  });
+  return std::all_of(chains.begin(), chains.end(),
+                     [](const ChainPart& chain) { return chain_step(*chain.system, *chain.work, *chain.step); });
 }
 
 }  // namespace wunderlich::math

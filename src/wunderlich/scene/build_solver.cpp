@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "wunderlich/scene/build.hpp"
+#include "wunderlich/scene/keyframes.hpp"
 #include "wunderlich/solver/two_stage/types.hpp"
 
 namespace wunderlich::scene {
@@ -152,6 +153,25 @@ solver::implicit::Options implicit_of(const Cell& cell) {
   return options;
 }
 
+/// Where a strip that nothing holds starts, if the scene says so.
+std::optional<Pose> place_of(const Cell& root, const Cell& initial) {
+  const Cell position = child(initial, "position"), tangent = child(initial, "tangent");
+  const Cell normal = child(initial, "normal");
+  std::optional<Pose> place;
+  for (const Cell& cell : {position, tangent, normal}) {
+    if (cell.value == nullptr) continue;
+    for (const char* support : {"clamps", "pins"}) {
+      if (count(child(root, support)) > 0)
+        fail(cell, fmt::format("has no effect with `{}`, which place the strip", support));
+    }
+    place.emplace();
+  }
+  if (!place) return place;
+  place->position = vector(position);
+  place->frame = frame_of({direction(tangent), direction(normal)}, {"tangent", "normal", "[0, 0, 1]"}, initial);
+  return place;
+}
+
 }  // namespace
 
 const char* method_name(Method method) {
@@ -240,6 +260,7 @@ InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon)
                                              most));
     }
   }
+  initial.place = place_of(root, cell);
   initial.velocity = vector(child(cell, "velocity"));
   initial.spin = vector(child(cell, "spin"));
   return initial;

@@ -31,7 +31,8 @@ Cell child(const Cell& parent, const std::string& name) {
   const std::string dot = parent.path.empty() ? "" : ".";
   const Value* value = parent.value == nullptr ? nullptr : parent.value->find(name);
   const bool elsewhere = value != nullptr && !value->alias.empty();
-  return {value, elsewhere ? value->alias : parent.path + dot + name, parent.pattern + dot + name, value != nullptr ? value->place : parent.place};
+  return {value, elsewhere ? value->alias : parent.path + dot + name, parent.pattern + dot + name,
+          value != nullptr ? value->place : parent.place};
 }
 
 Cell element(const Cell& list, std::size_t index) {

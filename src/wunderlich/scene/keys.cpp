@@ -219,6 +219,30 @@ const std::vector<Key> before_solver = {
      {},
      "Of a coil: 1/radius is its principal curvature. Required."},
     {"initial.slope", Type::number, "", -10, 10, "0", {}, "Of a coil: eta; the coil climbs when it is not 0."},
+    {"initial.position",
+     Type::vector,
+     "m",
+     -far,
+     far,
+     "[0, 0, 0]",
+     {},
+     "Where a strip that nothing holds has its first node; clamps and pins place the others."},
+    {"initial.tangent",
+     Type::vector,
+     "",
+     -far,
+     far,
+     "[1, 0, 0]",
+     {},
+     "And the direction d3 of its first segment; any length."},
+    {"initial.normal",
+     Type::vector,
+     "",
+     -far,
+     far,
+     "[0, 0, 1]",
+     {},
+     "And the direction d1 there, perpendicular to the tangent; any length."},
     {"initial.velocity", Type::vector, "m/s", -1e6, 1e6, "[0, 0, 0]", {}, "Velocity of the whole strip."},
     {"initial.spin", Type::vector, "rad/s", -1e6, 1e6, "[0, 0, 0]", {}, "Angular velocity about the center of mass."},
 };
@@ -231,17 +255,19 @@ bool belongs_to_a_strip(const std::string& path) {
 
 /// The strips of a scene with several: each has the keys of `ribbon`, and the sections that belong to a strip.
 std::vector<Key> strip_keys() {
-  std::vector<Key> list{{"ribbons",
-                         Type::list,
-                         "",
-                         0,
-                         1000,
-                         "",
-                         {},
-                         "Several strips in one scene, instead of `ribbon`. Each entry has the keys of `ribbon` itself, a `name`, and its "
-                         "own `clamps`, `pins`, `forces` and `initial`; everything else is common to all. With "
-                         "`contact.self: true` they touch one another. Several strips move with `solver.method: implicit`."},
-                        {"ribbons.*.name", Type::text, "", 0, 0, "", {}, "What the strip is called in the report."}};
+  std::vector<Key> list{
+      {"ribbons",
+       Type::list,
+       "",
+       0,
+       1000,
+       "",
+       {},
+       "Several strips in one scene, instead of `ribbon`. Each entry has the keys of `ribbon` itself, a `name`, and "
+       "its "
+       "own `clamps`, `pins`, `forces` and `initial`; everything else is common to all. With "
+       "`contact.self: true` they touch one another. Several strips move with `solver.method: implicit`."},
+      {"ribbons.*.name", Type::text, "", 0, 0, "", {}, "What the strip is called in the report."}};
   for (Key key : before_solver) {
     if (!belongs_to_a_strip(key.path) || key.path == "ribbon") continue;
     key.path = "ribbons.*." + (key.path.compare(0, 7, "ribbon.") == 0 ? key.path.substr(7) : key.path);

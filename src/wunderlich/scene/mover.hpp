@@ -31,7 +31,7 @@ class Mover {
   virtual void release() = 0;
   virtual const geometry::Ribbon& ribbon(std::size_t strip) const = 0;
   virtual const std::vector<geometry::State>& shapes() const = 0;  ///< one a strip, at least one
-  virtual double kinetic_energy() const = 0;  ///< [J]
+  virtual double kinetic_energy() const = 0;                       ///< [J]
   virtual void add_findings(Summary& summary) const = 0;
   /// The method's own state as numbers, and back; throws InputError if they do not fit.
   virtual std::vector<double> pack() const = 0;

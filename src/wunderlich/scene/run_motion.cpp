@@ -193,7 +193,8 @@ struct Motion {
       if (failure.empty()) failure = start.failure;
       shapes.push_back(start.failure.empty() ? std::move(start.shape) : geometry::straight_state(ribbon));
     }
-    if (failure.empty() && meet(scene, shapes)) failure = "a strip starts across itself or another strip, or touches it";
+    if (failure.empty() && meet(scene, shapes))
+      failure = "a strip starts across itself or another strip, or touches it";
     mover->start(shapes);
   }
 

@@ -48,6 +48,7 @@ struct InitialState {
   InitialShape shape = InitialShape::straight;
   double radius = 1;             ///< of a coil [m]
   double slope = 0;              ///< eta of a coil
+  std::optional<Pose> place;     ///< where a strip that nothing holds has its first node and segment
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   Vec3 spin = Vec3::Zero();      ///< about the center of mass [rad/s]
 };

@@ -80,6 +80,14 @@ Start along_path(const Scene& scene, const Ribbon& ribbon) {
   return start;
 }
 
+/// Moves the whole strip: what is at one place goes to the other.
+void move(const Pose& from, const Pose& to, State& state) {
+  const Quat turn = to.frame * from.frame.conjugate();
+  for (Vec3& r : state.r) r = to.position + turn * (r - from.position);
+  for (Quat& q : state.q) q = turn * q;
+  for (Quat& q : state.end_frame) q = turn * q;
+}
+
 /// Moves the whole strip so that its first support is where it is held at time 0.
 void bring_to_supports(const Scene& scene, const Ribbon& ribbon, State& state) {
   if (scene.surroundings.supports.empty()) return;
@@ -89,11 +97,8 @@ void bring_to_supports(const Scene& scene, const Ribbon& ribbon, State& state) {
   if (support.segment < 0 && support.orientation == Orientation::full) {
     now.frame = state.end_frame[support.node == 0 ? 0 : 1];
   }
-  const Quat turn =
-      support.orientation == Orientation::full ? goal.frame * now.frame.conjugate() : Quat(Quat::Identity());
-  for (Vec3& r : state.r) r = goal.position + turn * (r - now.position);
-  for (Quat& q : state.q) q = turn * q;
-  for (Quat& q : state.end_frame) q = turn * q;
+  const bool turns = support.orientation == Orientation::full;
+  move(now, {goal.position, turns ? goal.frame : now.frame}, state);
 }
 
 /// A coil of constant curvature and ruling slope: a ring, a spiral staircase. Exactly isometric.
@@ -142,6 +147,7 @@ Start start_of(const Scene& scene, const Ribbon& ribbon) {
   if (!start.failure.empty()) return start;
   const bool placed = scene.initial.shape == InitialShape::equilibrium || ribbon.is_loop();
   if (!placed) bring_to_supports(scene, ribbon, start.shape);
+  if (scene.initial.place) move({start.shape.r.front(), start.shape.q.front()}, *scene.initial.place, start.shape);
   start.shape.time = 0;
   set_velocity(scene.initial, ribbon, start.shape);
   return start;

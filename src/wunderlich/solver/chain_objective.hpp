@@ -53,10 +53,10 @@ struct ChainProblem {
   double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
   const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0
   ContactProblem contact;                   ///< solids that the strip stays out of
-  SelfContact self;                         ///< and how it stays out of itself; in a step in time all strips do so together
-  std::vector<Hold> holds;                  ///< sorted by decreasing node
-  bool closed = false;                      ///< the loop's closure is a constraint
-  std::array<bool, 6> base_fixed{};         ///< position and rotation of the base
+  SelfContact self;                  ///< and how it stays out of itself; in a step in time all strips do so together
+  std::vector<Hold> holds;           ///< sorted by decreasing node
+  bool closed = false;               ///< the loop's closure is a constraint
+  std::array<bool, 6> base_fixed{};  ///< position and rotation of the base
   Touchable touchable() const { return {contact, self}; }
 };
 

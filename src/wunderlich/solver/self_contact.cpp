@@ -66,8 +66,7 @@ bool are_neighbours(const SelfContact& problem, const SelfPair& pair) {
   if (&surface != &surface_of(problem, pair.corner[3])) return false;
   const int laps = surface.period > 0 ? 1 : 0;
   PairPoints x;
-  for (int k = 0; k < 4; ++k)
-    x[static_cast<std::size_t>(k)] = flat(problem, pair.corner[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < 4; ++k) x[static_cast<std::size_t>(k)] = flat(problem, pair.corner[static_cast<std::size_t>(k)]);
   for (int lap = -laps; lap <= laps; ++lap) {
     for (int k = first; k < 4 && laps > 0; ++k) {
       x[static_cast<std::size_t>(k)] = flat(problem, surface, pair.corner[static_cast<std::size_t>(k)], lap);

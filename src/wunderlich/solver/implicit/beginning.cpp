@@ -14,7 +14,7 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kFlat = 1e-4;              // curvature over 1/length that counts as none
+constexpr double kFlat = 1e-4;             // curvature over 1/length that counts as none
 constexpr double kBoundaryFraction = 0.5;  // how far the prediction may move |x| towards 1
 
 /// Joint coordinates carried on as in the last step; less far where rulings would meet.

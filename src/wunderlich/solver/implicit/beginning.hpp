@@ -13,8 +13,7 @@ void set_problems(Paths paths, const Options& options, const Scheme& scheme, dou
 void find_contacts(Paths paths, const State& state, Workspace& work);
 
 /// The problem of a step, and the predictions that Newton's method starts from.
-void prepare(Paths paths, const Options& options, const Scheme& scheme, double t1, const State& state,
-             Workspace& work);
+void prepare(Paths paths, const Options& options, const Scheme& scheme, double t1, const State& state, Workspace& work);
 
 /// Where Newton's method may start: the predictions if nothing is in their way, or else where the strips are, or where
 /// a moving solid would carry them. False if something is in the way of all these. Says what rubs as well.

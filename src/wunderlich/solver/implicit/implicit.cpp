@@ -303,6 +303,7 @@ void report_contact(const Workspace& work, StepReport& report) {
 }  // namespace
 
 StepReport step(Paths paths, const Options& options, double t1, int halvings, State& state, Workspace& work) {
+  work.strips.resize(paths.size());
   const double h = t1 - state.time();
   StepReport report;
   const int level = state.level;

@@ -25,7 +25,7 @@ struct MinimiseWorkspace {
   std::vector<NewtonWorkspace> strips;
   SelfContacts self, trial_self;
   SelfSearch search;
-  bool placed = false;  ///< are the iterates in place? Taken once
+  bool placed = false;                           ///< are the iterates in place? Taken once
   std::vector<StripPlace> places, trial_places;  ///< `current` and `trial` of the strips
   std::vector<math::ChainPart> parts;
   std::vector<math::ChainSystem*> systems;
