@@ -136,7 +136,7 @@ struct Parts {
 
   Parts(int segments, KineticEnergy kinetic) : motion(swing(), segments, kinetic, Integrator::generalised_alpha) {
     motion.advance_by(10);
-    problem = motion.work.problem;
+    problem = motion.work.strips[0].problem;
     chain = motion.state.strips[0].path.chain;
     multipliers = motion.state.strips[0].path.multipliers;
     kinematics();

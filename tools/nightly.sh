@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Slower checks than ./test has time for, some two hours on two cores: the paper's figures in full, clang-tidy on every
-# source, every check of the sanitizers, tests repeated in random order, half an hour of fuzzing, the core compiled
+# source, every check of the sanitizers, tests repeated in random order, whole scenes searched for penetration, half an hour of fuzzing, the core compiled
 # against libc++, and coverage (build/coverage/report).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,6 +29,9 @@ WUNDERLICH_SOAK_STEPS=100000 build/release/test_implicit --gtest_filter=Soak.Lon
 
 echo "nightly: 1000 random drops on solids"
 WUNDERLICH_DROPS=1000 build/release/test_implicit --gtest_filter=Drops.Random
+
+echo "nightly: nothing goes through anything, in whole scenes"
+WUNDERLICH_WHOLE_SCENES=1 build/release/test_penetration
 
 echo "nightly: 30 minutes of fuzzing"
 tools/fuzz.sh 1800

@@ -205,7 +205,7 @@ void check_obstacles(const Scene& scene) {
     if (solver::is_inside_mesh(contact.meshes, points.meshes)) {
       throw InputError(scene.obstacle_places[i] + ": the strip starts inside; it must be outside all of its triangles");
     }
-    const double distance = solver::smallest_distance(contact, points);
+    const double distance = solver::smallest_distance(contact, points) + contact.margin;
     if (distance > contact.margin) continue;
     throw InputError(fmt::format("{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
                                  scene.obstacle_places[i], std::abs(distance), distance < 0 ? "inside" : "from it",

@@ -251,10 +251,7 @@ bool may_go(const ContactProblem& problem, const ContactPoints& from, ContactPoi
 
 double smallest_distance(const ContactProblem& problem, const ContactPoints& points) {
   double least = mesh_distance(problem.meshes, points.meshes);
-  for (const double gap : points.gap) least = std::min(least, gap + problem.margin);
-  for (const ContactFacet& facet : points.facets) {
-    if (!facet.near) least = std::min(least, facet.least + problem.margin);
-  }
+  for (const ContactFacet& facet : points.facets) least = std::min(least, facet.least);
   return least;
 }
 

@@ -91,8 +91,8 @@ double contact_energy(const geometry::Ribbon& ribbon, const ContactProblem& prob
 /// lose more than nine tenths of its gap within the barrier's distance. Buffers of `to` are of use.
 bool may_go(const ContactProblem& problem, const ContactPoints& from, ContactPoints& to);
 
-/// Distance of the nearest point to a solid beyond the thickness [m], where none is near a bound from below; infinite
-/// without solids.
+/// Distance of the facets to a solid beyond the thickness [m], a bound from below: what may be nearer between their
+/// points is taken off. Infinite without solids.
 double smallest_distance(const ContactProblem& problem, const ContactPoints& points);
 
 /// Points that feel a solid.

@@ -58,7 +58,7 @@ double deepest(const Workspace& work) {
 }
 
 void record(const Nearest& nearest, const Workspace& work, StepReport& report) {
-  report.nearest = std::min(report.nearest, nearest.distance);
+  report.nearest = std::min(report.nearest, nearest.gap);
   report.push.setZero();
   report.touching = 0;
   for (const Touch& touch : work.touches) {
