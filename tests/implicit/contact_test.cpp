@@ -60,6 +60,40 @@ TEST(Contact, AClampAndASolidShareTheWeight) {
   EXPECT_LT(error, 1e-6);
 }
 
+/// With a thickness an equilibrium keeps it, and what it reports is the distance beyond: all that the facets have left,
+/// less at most the margin for what lies between the solver's points.
+TEST(Contact, EquilibriaReportTheDistanceBeyondTheThickness) {
+  for (const contact::Shape& shape :
+       {contact::Shape{contact::HalfSpace{}}, contact::Shape{contact::Box{{1, 1, 0.1}}}}) {
+    geometry::RibbonSpec spec = sheet(2e-5, true);
+    constraint::Surroundings surroundings;
+    surroundings.gravity = Vec3(0, 0, -kGravity);
+    surroundings.supports = {clamp(0, along_x(0, 0))};
+    const double top = std::holds_alternative<contact::Box>(shape) ? 0.1 : 0;
+    surroundings.obstacles = {solid(shape, {Vec3(0, 0, -0.02 - top), Quat::Identity()})};
+    surroundings.contact.distance = spec.width / 30;
+    surroundings.contact.thickness = 2e-3;
+    const PathEnd end = run_path(spec, surroundings, {});
+    ASSERT_TRUE(end.done) << end.failure;
+    double lowest = 1;  // on level faces nothing is lower than a corner
+    for (std::size_t s = 0; s < end.shape.q.size(); ++s) {
+      const Mat3 frame = end.shape.q[s].toRotationMatrix();
+      for (const std::size_t node : {s, s + 1}) {
+        for (const double v : {-0.5 * spec.width, 0.5 * spec.width}) {
+          const Vec3 corner = end.shape.r[node] + v * (frame.col(1) + end.shape.eta[node] * frame.col(2));
+          lowest = std::min(lowest, corner.z() + 0.02);
+        }
+      }
+    }
+    const double beyond = lowest - surroundings.contact.thickness;
+    show("distance beyond the thickness, equilibrium", beyond, 0);
+    EXPECT_GT(beyond, 0);
+    EXPECT_LT(beyond, surroundings.contact.distance);  // it lies there
+    EXPECT_GT(end.at.nearest, 0);
+    EXPECT_LT(end.at.nearest, beyond + 1e-9);
+  }
+}
+
 /// Speed along the slope, down it, after 0.5 s on a plane of slope tan(alpha) with friction.
 double slide(double slope, double friction) {
   const double alpha = std::atan(slope);

@@ -94,6 +94,20 @@ obstacles:
   EXPECT_LT((pose_of(scene, 1, 1).frame * Vec3::UnitX() - Vec3(0, 1, 0)).norm(), 1e-15);
 }
 
+// What a solid's own keys say is where keyframes that omit it take it from, and no place it has at 0.
+TEST(Obstacles, WithoutAKeyframeAtZeroStartAtTheirFirst) {
+  const Scene scene = read(R"(
+obstacles:
+  - shape: sphere
+    radius: 0.1
+    position: [1, 0, 0]
+    keyframes: [{time: 1, position: [3, 0, 0]}, {time: 2, position: [5, 0, 0]}]
+)");
+  EXPECT_EQ(pose_of(scene, 0, 0).position, Vec3(3, 0, 0));
+  EXPECT_EQ(pose_of(scene, 0, 1).position, Vec3(3, 0, 0));
+  EXPECT_LT((pose_of(scene, 0, 1.5).position - Vec3(4, 0, 0)).norm(), 1e-15);
+}
+
 // Where only the axis changes, the frame does so without a turn about it: from key to key it stays as near as it can.
 TEST(Obstacles, ARoundBodyDoesNotTurnAboutItsAxisByItself) {
   const Scene scene = read(R"(

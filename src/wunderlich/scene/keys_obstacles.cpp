@@ -99,7 +99,8 @@ const std::vector<Key> table = {
      10000,
      "",
      {},
-     "Motion, as for clamps. What is no box or mesh does not turn about its axis while the axis changes."},
+     "Motion, as for clamps: a solid without a keyframe at 0 starts where its first one has it. What is no box or mesh "
+     "does not turn about its axis while the axis changes."},
     {"obstacles.*.keyframes.*.time", Type::number, "s", 0, long_time, "", {}, "Increasing. Required."},
     {"obstacles.*.keyframes.*.position", Type::vector, "m", -far, far, "", {}, "As above."},
     {"obstacles.*.keyframes.*.axis", Type::vector, "", -far, far, "", {}, "As above."},

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "wunderlich/solver/barrier.hpp"
+#include "wunderlich/contact/barrier.hpp"
 
 namespace wunderlich::solver {
 
@@ -176,7 +176,8 @@ bool facet_may_go(const ContactProblem& problem, std::size_t index, const Contac
 
 /// Force of the barrier on a point [N].
 double force_on(const ContactProblem& problem, const ContactPoints& points, const Touch& touch) {
-  return -problem.stiffness * touch.area * barrier_slopes(points.gap[touch.point], problem.distance, touch.log).first;
+  return -problem.stiffness * touch.area *
+         contact::barrier_slopes(points.gap[touch.point], problem.distance, touch.log).first;
 }
 
 }  // namespace
@@ -238,7 +239,7 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
 double contact_energy(const Ribbon& ribbon, const ContactProblem& problem, const ContactPoints& points) {
   double sum = 0;
   for (const Touch& touch : points.touches)
-    sum += touch.area * barrier_value(points.gap[touch.point], problem.distance, touch.log);
+    sum += touch.area * contact::barrier_value(points.gap[touch.point], problem.distance, touch.log);
   return problem.stiffness * sum + mesh_energy(ribbon, problem.meshes, points.meshes);
 }
 

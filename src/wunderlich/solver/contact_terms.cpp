@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/math/four.hpp"
-#include "wunderlich/solver/barrier.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
 
 namespace wunderlich::solver {
@@ -81,7 +81,7 @@ void add_touch(const Ribbon& ribbon, const ContactProblem& problem, const Chain&
   const Lever lever{((touch.share - 1) * ribbon.rest_length[s] + touch.v * eta) * sums.d3 + touch.v * sums.d2,
                     {sums.eta_free[0] * (1 - touch.share) * touch.v, sums.eta_free[1] * touch.share * touch.v}};
   const double weight = problem.stiffness * touch.area, gap = points.gap[touch.point];
-  const BarrierSlopes slopes = barrier_slopes(gap, problem.distance, touch.log);
+  const contact::BarrierSlopes slopes = contact::barrier_slopes(gap, problem.distance, touch.log);
   const double first = weight * slopes.first;
   const Eight nearer = moved(sums, lever, to_space * points.normal[touch.point]);
   sums.hessian.add(weight * slopes.second, nearer);
