@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "solver/coil.hpp"
 #include "solver/paths.hpp"
 #include "support/crossings.hpp"
 #include "wunderlich/geometry/topology.hpp"
@@ -21,52 +22,6 @@ using geometry::Chain;
 using geometry::Kinematics;
 using geometry::Ribbon;
 using solver::ChainProblem;
-
-/// Two turns and a half of a coil whose turns lean on each other.
-struct Coil {
-  Ribbon ribbon;
-  Chain chain;
-  ChainProblem problem;
-  Coil() {
-    geometry::RibbonSpec spec;
-    spec.length = 4;
-    spec.width = 0.3;
-    spec.segments = 18;
-    spec.free_rulings = true;
-    ribbon = geometry::make_ribbon(spec);
-    chain = geometry::straight_chain(ribbon, {Vec3(0.1, 0.2, 0.3), straight_frame()});
-    std::mt19937 random(3);
-    std::normal_distribution<double> normal;
-    for (int i = 0; i <= ribbon.segments; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (geometry::kappa_is_free(ribbon, i)) chain.kappa[k] = 2 * kPi / 1.6 * (1 + 0.01 * normal(random));
-      chain.eta[k] = 0.25 + 0.005 * normal(random);
-    }
-    problem.barrier = 0.01;
-    problem.base_fixed.fill(true);
-    for (int i = 0; i <= ribbon.segments; ++i) {
-      problem.force.push_back(Vec3(normal(random), normal(random), normal(random)));
-      problem.anchor.push_back(Vec3(normal(random), normal(random), normal(random)));
-      problem.tie.push_back(2);
-    }
-    constraint::Surroundings surroundings;
-    surroundings.contact = {0.25, 0.01, true};
-    place_self(ribbon, surroundings, 0.25, true, chain.eta, problem.self);
-  }
-};
-
-Chain moved(const Chain& chain, const VectorXd& x) {
-  Chain out = chain;
-  for (std::size_t i = 0; i < out.kappa.size(); ++i) {
-    out.kappa[i] += x[2 * static_cast<Index>(i)];
-    out.eta[i] += x[2 * static_cast<Index>(i) + 1];
-  }
-  return out;
-}
-
-std::vector<solver::StripPlace> alone(const geometry::Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
-  return {{ribbon, chain, k}};
-}
 
 /// Value of coils, gradient and Newton's step, one behind the other.
 struct Linear {

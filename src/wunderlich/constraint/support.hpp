@@ -75,6 +75,7 @@ struct Contact {
   double distance = 0;   ///< at which forces begin [m]
   double thickness = 0;  ///< gap that stays between the strip's middle surface and a solid, or itself [m]
   bool self = false;     ///< does the strip feel itself
+  double friction = 0;   ///< Coulomb's coefficient of the strip on itself
 };
 
 /// Everything imposed from outside.

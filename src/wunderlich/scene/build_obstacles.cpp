@@ -133,8 +133,13 @@ constraint::Contact build_contact(const Cell& root, double width) {
   if (cell.value != nullptr && count(child(root, "obstacles")) == 0 && !boolean(self)) {
     fail(cell, "has no effect without `obstacles` or `contact.self: true`");
   }
+  const Cell friction = child(cell, "friction");
+  if (boolean(self) && number(friction) > 0 && method_of(root) == Method::equilibrium) {
+    fail(friction, "has no effect with `solver.method: equilibrium`; use `implicit`");
+  }
   const Cell distance = child(cell, "distance");
-  return {distance.value != nullptr ? number(distance) : width / 30, number(child(cell, "thickness")), boolean(self)};
+  return {distance.value != nullptr ? number(distance) : width / 30, number(child(cell, "thickness")), boolean(self),
+          number(friction)};
 }
 
 }  // namespace wunderlich::scene

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "wunderlich/contact/barrier.hpp"
+#include "wunderlich/solver/coulomb.hpp"
 
 namespace wunderlich::solver {
 
@@ -281,7 +282,6 @@ double solid_work(const Ribbon& ribbon, const ContactProblem& from, const Contac
 
 void set_friction(const Ribbon& ribbon, const ContactProblem& from, const ContactPoints& points, const Chain& chain,
                   const Kinematics& k, double h, ContactProblem& problem) {
-  constexpr double kSlipSpeed = 1e-3;  // below which friction is less than Coulomb's [m/s]
   problem.friction.clear();
   problem.slip = kSlipSpeed * h;
   const std::size_t count = from.solids.size();

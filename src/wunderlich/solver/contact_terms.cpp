@@ -5,6 +5,7 @@
 #include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/math/four.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
+#include "wunderlich/solver/coulomb.hpp"
 
 namespace wunderlich::solver {
 
@@ -105,21 +106,16 @@ Slide slide_of(const Friction& friction, const Kinematics& k) {
   return {way - friction.normal.dot(way) * friction.normal, arm};
 }
 
-/// Share of the full force over the way, (2 share - share^2) / way; finite at rest.   @eq Li2020:14
-inline double pull_of(double way, double slip) { return way < slip ? (2 - way / slip) / slip : 1 / way; }
-
 /// Force times way, smooth at rest.   @eq Li2020:14
 void add_friction(const Friction& friction, double slip, bool settled, const Slide& slide, FacetSums& sums) {
-  const double way = slide.way.norm(), pull = friction.force * pull_of(way, slip);
-  const double more = friction.force * (way < slip ? 2 * (1 - way / slip) / slip : 0);
-  // What will stick has far more stiffness than it shows on the way there. A parabola that touches here and lies above
-  // everywhere else ends within reach of the minimum; the exact Hessian overshoots by what it does not see.
+  const double way = slide.way.norm();
+  const Pull pull = pull_of(way, slip, settled);
   const Vec3 onward = way > 0 ? Vec3((1 / way) * slide.way) : friction.normal.unitOrthogonal();
   const Lever lever{slide.arm, {0, 0}};
   const Eight along = moved(sums, lever, onward);
-  sums.hessian.add(settled ? more : pull, along);
-  sums.hessian.add(pull, moved(sums, lever, friction.normal.cross(onward)));
-  add_force(pull * way, along, lever, sums);
+  sums.hessian.add(friction.force * pull.along, along);
+  sums.hessian.add(friction.force * pull.across, moved(sums, lever, friction.normal.cross(onward)));
+  add_force(friction.force * pull.across * way, along, lever, sums);
 }
 
 /// The sums as a term, with the second derivative of the points' places: how levers turn.
@@ -168,8 +164,7 @@ void add_contact(const Ribbon& ribbon, const ContactProblem& problem, const Chai
 double friction_value(const ContactProblem& problem, const Kinematics& k) {
   double sum = 0;
   for (const Friction& friction : problem.friction) {
-    const double way = slide_of(friction, k).way.norm(), share = way / problem.slip;
-    sum += friction.force * (share < 1 ? way * share * (1 - share / 3) : way - problem.slip / 3);
+    sum += friction.force * sliding_value(slide_of(friction, k).way.norm(), problem.slip);
   }
   return sum;
 }

@@ -160,6 +160,11 @@ void find_corners(Strips strips, std::vector<Vec3>& corners) {
   }
 }
 
+void find_places(Strips strips, const SelfContact& problem, SelfContacts& contacts) {
+  find_corners(strips, contacts.corners);
+  if (!problem.rubs.empty()) find_material(strips, problem, contacts.material);
+}
+
 /// Those of the candidates that feel each other.
 void select(const SelfContact& problem, const std::vector<SelfPair>& candidates, SelfContacts& contacts) {
   contacts.pairs.clear();
@@ -167,16 +172,6 @@ void select(const SelfContact& problem, const std::vector<SelfPair>& candidates,
     const double distance = contact::pair_distance(pair.kind, points_of(pair, contacts.corners));
     if (distance < problem.reach + problem.thickness) contacts.pairs.push_back(pair);
   }
-}
-
-contact::Gap gap_of(const SelfContact& problem, const SelfPair& pair) {
-  const auto length = [&](int a, int b) {
-    return (flat(problem, pair.corner[static_cast<std::size_t>(a)]) -
-            flat(problem, pair.corner[static_cast<std::size_t>(b)]))
-        .squaredNorm();
-  };
-  const double parallel = pair.kind == PairKind::edge_edge ? kParallel * length(0, 1) * length(2, 3) : 0;
-  return {problem.reach, problem.thickness, parallel};
 }
 
 /// May a pair go this way?
@@ -189,63 +184,19 @@ bool may_go(const SelfContact& problem, const PairPoints& from, const PairPoints
   return contact::free_share(kind, from, to, problem.thickness, least / gap) >= 1;
 }
 
-/// Second derivatives between corners, gathered over all pairs.
-struct Gather {
-  struct Block {
-    int a, b;
-    Mat3 hessian, geometric;
-  };
-  std::vector<Block> blocks;
-
-  void add(const SelfPair& pair, const contact::Mat12& hessian, const contact::Mat12& geometric) {
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        const int ca = pair.corner[static_cast<std::size_t>(a)], cb = pair.corner[static_cast<std::size_t>(b)];
-        if (ca <= cb)
-          blocks.push_back({ca, cb, hessian.block<3, 3>(3 * a, 3 * b), geometric.block<3, 3>(3 * a, 3 * b)});
-      }
-    }
-  }
-
-  void merge() {
-    std::stable_sort(blocks.begin(), blocks.end(),
-                     [](const Block& x, const Block& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-    std::size_t kept = 0;
-    for (std::size_t k = 1; k < blocks.size(); ++k) {
-      if (blocks[kept].a == blocks[k].a && blocks[kept].b == blocks[k].b) {
-        blocks[kept].hessian += blocks[k].hessian;
-        blocks[kept].geometric += blocks[k].geometric;
-      } else {
-        blocks[++kept] = blocks[k];
-      }
-    }
-    if (!blocks.empty()) blocks.resize(kept + 1);
-  }
-};
-
 using Systems = std::span<math::ChainSystem* const>;
 
-/// Where a corner is among the points of its chain.
-struct PointPlace {
-  int chain = -1, point = -1;
-};
-
-PointPlace add_point(Strips strips, const SelfContact& problem, const SelfContacts& contacts, int corner,
-                     const std::vector<Vec3>& force, Systems systems) {
-  const SelfSurface& surface = surface_of(problem, corner);
-  const auto chain = static_cast<std::size_t>(&surface - problem.surfaces.data());
-  const int node = (corner - surface.first_corner) / 2;
-  const auto& [ribbon, rulings, k] = strips[chain];
-  const auto i = static_cast<std::size_t>(node);
-  const double v = (corner % 2 == 0 ? -0.5 : 0.5) * ribbon.width;
-  const Vec3 slant = geometry::eta_is_free(ribbon, node) ? Vec3(v * k.frame[i].col(2)) : Vec3::Zero();
-  auto& points = systems[chain]->points;
-  const auto at = static_cast<std::size_t>(corner);
-  points.push_back({node, contacts.corners[at] - k.r[i], slant, force[at]});
-  return {static_cast<int>(chain), static_cast<int>(points.size()) - 1};
-}
-
 }  // namespace
+
+contact::Gap gap_of(const SelfContact& problem, const SelfPair& pair) {
+  const auto length = [&](int a, int b) {
+    return (flat(problem, pair.corner[static_cast<std::size_t>(a)]) -
+            flat(problem, pair.corner[static_cast<std::size_t>(b)]))
+        .squaredNorm();
+  };
+  const double parallel = pair.kind == PairKind::edge_edge ? kParallel * length(0, 1) * length(2, 3) : 0;
+  return {problem.reach, problem.thickness, parallel};
+}
 
 void place_self(const Ribbon& loop, const constraint::Surroundings& surroundings, double reach, bool closed,
                 const std::vector<double>& eta, SelfContact& problem) {
@@ -253,6 +204,7 @@ void place_self(const Ribbon& loop, const constraint::Surroundings& surroundings
   problem.reach = contact.self ? reach : 0;
   if (!contact.self) return;
   problem.thickness = contact.thickness;
+  problem.friction = contact.friction;
   const double weight = loop.area_density * surroundings.gravity.norm() * loop.width * loop.length / loop.segments;
   problem.stiffness = std::max(kBending * loop.bending_stiffness / loop.width, kWeight * weight) / problem.reach;
   SelfSurface surface;
@@ -273,6 +225,7 @@ void place_beside(const SelfContact& other, SelfContact& all) {
   all.reach = all.surfaces.empty() ? other.reach : std::min(all.reach, other.reach);
   all.thickness = std::max(all.thickness, other.thickness);
   all.stiffness = std::max(all.stiffness, other.stiffness);
+  all.friction = std::max(all.friction, other.friction);
   for (SelfSurface surface : other.surfaces) {
     surface.first_corner += static_cast<int>(all.flat.size());
     all.surfaces.push_back(surface);
@@ -281,13 +234,13 @@ void place_beside(const SelfContact& other, SelfContact& all) {
 }
 
 void find_pairs(Strips strips, const SelfContact& problem, SelfSearch& search, SelfContacts& contacts) {
-  find_corners(strips, contacts.corners);
+  find_places(strips, problem, contacts);
   find_candidates(problem, contacts.corners, contacts.corners, search);
   select(problem, search.candidates, contacts);
 }
 
 bool travel(Strips strips, const SelfContact& problem, const SelfContacts& from, SelfSearch& search, SelfContacts& to) {
-  find_corners(strips, to.corners);
+  find_places(strips, problem, to);
   for (const Vec3& corner : to.corners) {
     if (!corner.allFinite()) return false;
   }
@@ -311,34 +264,16 @@ void add_self_contact(Strips strips, const SelfContact& problem, const SelfConta
                       std::vector<math::ChainCoupling>& between) {
   between.clear();
   if (contacts.pairs.empty()) return;
-  Gather gather;
-  std::vector<Vec3> force(contacts.corners.size(), Vec3::Zero());
+  CornerSums sums;
+  clear(contacts.corners.size(), sums);
   for (const SelfPair& pair : contacts.pairs) {
     const PairPoints x = points_of(pair, contacts.corners);
     const contact::PairEnergy e = contact::pair_energy(pair.kind, x, gap_of(problem, pair));
     const contact::Mat12 stiff = problem.stiffness * e.second * e.along * e.along.transpose();
     const contact::Mat12 whole = problem.stiffness * e.hessian;
-    gather.add(pair, stiff, whole - stiff);
-    for (int a = 0; a < 4; ++a) {
-      force[static_cast<std::size_t>(pair.corner[static_cast<std::size_t>(a)])] +=
-          problem.stiffness * e.gradient.segment<3>(3 * a);
-    }
+    add(pair.corner, problem.stiffness * e.gradient, stiff, whole - stiff, sums);
   }
-  gather.merge();
-  std::vector<PointPlace> place(contacts.corners.size());
-  for (const Gather::Block& block : gather.blocks) {
-    if (block.a != block.b) continue;  // each corner has a block with itself
-    place[static_cast<std::size_t>(block.a)] = add_point(strips, problem, contacts, block.a, force, systems);
-  }
-  for (const Gather::Block& block : gather.blocks) {
-    const PointPlace a = place[static_cast<std::size_t>(block.a)], b = place[static_cast<std::size_t>(block.b)];
-    const math::PointCoupling coupling{a.point, b.point, block.hessian, block.geometric};
-    if (a.chain == b.chain) {
-      systems[static_cast<std::size_t>(a.chain)]->couplings.push_back(coupling);
-    } else {
-      between.push_back({{a.chain, b.chain}, coupling});
-    }
-  }
+  hand_over(strips, sums, contacts.corners, false, systems, between);
 }
 
 double smallest_distance(const SelfContact& problem, const SelfContacts& contacts) {

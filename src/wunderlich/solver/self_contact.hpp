@@ -13,17 +13,9 @@
 #include "wunderlich/constraint/support.hpp"
 #include "wunderlich/contact/near_pairs.hpp"
 #include "wunderlich/contact/pair.hpp"
-#include "wunderlich/geometry/chain.hpp"
-#include "wunderlich/math/chain_sweep.hpp"
+#include "wunderlich/solver/corner_sums.hpp"
 
 namespace wunderlich::solver {
-
-/// A strip as it lies.
-struct StripPlace {
-  const geometry::Ribbon& ribbon;
-  const geometry::Chain& chain;
-  const geometry::Kinematics& kinematics;
-};
 
 /// The surface of one strip among others.
 struct SelfSurface {
@@ -34,11 +26,24 @@ struct SelfSurface {
   double open_seam = 0;  ///< length about the seam of a loop that is not closed yet, whose sides do not touch [m]
 };
 
+/// Two parts that rub during a step: one slides along the other in the plane tangent where the step began, against a
+/// force that was there. Points go with the material, their rulings are those of the step's start.   @eq Li2020:14
+struct SelfRub {
+  std::array<int, 4> corner;
+  Vec4 weights;  ///< of the corners: their sum is the way from the second part to the first
+  Vec3 normal;
+  Vec3 from;     ///< that way when the step began [m]
+  double force;  ///< coefficient times normal force [N]
+};
+
 /// How strips feel themselves and one another during one minimisation.
 struct SelfContact {
   double reach = 0;      ///< gap at which forces begin [m]; 0: they do not
   double thickness = 0;  ///< that stays between two parts of the middle surfaces [m]
   double stiffness = 0;  ///< of a pair's barrier [N/m]
+  double friction = 0;   ///< Coulomb's coefficient
+  std::vector<SelfRub> rubs;
+  double slip = 0;  ///< way in a step from which on friction has its full force [m]
   std::vector<SelfSurface> surfaces;
   std::vector<Vec3> flat;  ///< corners in the flat pattern of their own strip, which tells who is whose neighbour
   bool active() const { return reach > 0; }
@@ -52,7 +57,8 @@ struct SelfPair {
 
 /// Where the corners are, and the pairs within reach.
 struct SelfContacts {
-  std::vector<Vec3> corners;  ///< (2 (segments + 1)) of each strip
+  std::vector<Vec3> corners;   ///< (2 (segments + 1)) of each strip
+  std::vector<Vec3> material;  ///< where their points went that were corners when the step began; where something rubs
   std::vector<SelfPair> pairs;
 };
 
@@ -84,12 +90,29 @@ void find_pairs(std::span<const StripPlace> strips, const SelfContact& problem, 
 bool travel(std::span<const StripPlace> strips, const SelfContact& problem, const SelfContacts& from,
             SelfSearch& search, SelfContacts& to);
 
+/// Where the points of the material are that were corners when the step began.
+void find_material(std::span<const StripPlace> strips, const SelfContact& problem, std::vector<Vec3>& material);
+
+/// How the barrier of a pair acts.
+contact::Gap gap_of(const SelfContact& problem, const SelfPair& pair);
+
 /// Energy of the barrier [J].
 double self_energy(const SelfContact& problem, const SelfContacts& contacts);
 
 /// Adds its derivatives: to the strips' own systems, and to `between` what points of two strips do to each other.
 void add_self_contact(std::span<const StripPlace> strips, const SelfContact& problem, const SelfContacts& contacts,
                       std::span<math::ChainSystem* const> systems, std::vector<math::ChainCoupling>& between);
+
+/// Friction in a step of length h: of the pairs at its start.
+void set_friction(const SelfContacts& contacts, double h, SelfContact& problem);
+
+/// What is minimised for it: force times way, rounded off where the way is short [J].
+double friction_value(const SelfContact& problem, const SelfContacts& contacts);
+
+/// Adds its derivatives; unless it is `settled` with the Hessian of a majorant.
+void add_self_friction(std::span<const StripPlace> strips, const SelfContact& problem, const SelfContacts& contacts,
+                       bool settled, std::span<math::ChainSystem* const> systems,
+                       std::vector<math::ChainCoupling>& between);
 
 /// Smallest distance of parts that are not neighbours, beyond the thickness [m]; `reach` where none is nearer.
 double smallest_distance(const SelfContact& problem, const SelfContacts& contacts);

@@ -125,6 +125,7 @@ bool start_clear(Paths paths, const State& state, double h, Workspace& work) {
     set_friction(paths[i].ribbon, own.solids, own.before, state.strips[i].path.chain, own.kinematics, h,
                  own.problem.contact);
   }
+  if (work.self.active()) set_friction(work.self_before, h, work.self);
   const auto strips = moving(paths, work);
   const auto is_clear = [&] { return place(strips, work.self, work.self_before, work.newton); };
   if (is_clear()) return true;

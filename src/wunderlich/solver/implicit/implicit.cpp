@@ -348,7 +348,8 @@ StepReport step(Paths paths, const Options& options, double t1, int halvings, St
     break;
   }
   // The work of loads without a potential is not known, and what friction takes is gone.
-  const bool known = paths.size() == 1 && !loaded && work.strips.front().problem.contact.friction.empty();
+  const bool rubs = !work.strips.front().problem.contact.friction.empty() || !work.self.rubs.empty();
+  const bool known = paths.size() == 1 && !loaded && !rubs;
   if (options.conserve && known) keep_conserved(paths.front().ribbon, options, growth, state, work);
   state.calm = report.repeats > 0 ? 0 : std::min(state.calm, kCalmSteps) + 1;
   if (state.calm > kCalmSteps && state.level > 0) --state.level, state.calm = 0;

@@ -84,9 +84,14 @@ bool value_trials(const Iterate& at, double scale) {
   return !at.self.active() || travel(work.trial_places, at.self, work.self, work.search, work.trial_self);
 }
 
+/// What strips do to themselves and one another, of all that is minimised.
+double self_value(const SelfContact& self, const SelfContacts& contacts) {
+  return self.active() ? self_energy(self, contacts) + friction_value(self, contacts) : 0;
+}
+
 /// Everything that is minimised, of the trials.
 double trial_total(const Iterate& at) {
-  double sum = at.self.active() ? self_energy(at.self, at.work.trial_self) : 0;
+  double sum = self_value(at.self, at.work.trial_self);
   for (const NewtonWorkspace& own : at.work.strips) sum += own.trial_value.total();
   return sum;
 }
@@ -117,7 +122,9 @@ void linearise_all(const Iterate& at, bool settled) {
     linearise(*ribbon, *problem, own.current, own.kinematics, own.multipliers, own.touching, own.system);
     if (at.conservative) use_torsion_chart(*ribbon, own.current, own.system);
   }
-  if (at.self.active()) add_self_contact(work.places, at.self, work.self, work.systems, work.between);
+  if (!at.self.active()) return;
+  add_self_contact(work.places, at.self, work.self, work.systems, work.between);
+  add_self_friction(work.places, at.self, work.self, settled, work.systems, work.between);
 }
 
 /// Solves; false if that fails or negative modes are left and would matter.
@@ -191,7 +198,7 @@ Merit merit_here(Iterate& at) {
   double infeasibility = 0, slope = 0;
   for (const NewtonWorkspace& own : at.work.strips) infeasibility += infeasibility_of(own), slope += slope_of(own, 1);
   at.emphasis = emphasis_of(infeasibility, slope);
-  Merit merit{at.self.active() ? self_energy(at.self, at.work.self) : 0, 0};
+  Merit merit{self_value(at.self, at.work.self), 0};
   for (const NewtonWorkspace& own : at.work.strips) {
     merit.value += merit_of(own, own.value, own.residuals, at.emphasis);
     merit.slope += slope_of(own, at.emphasis);
@@ -200,7 +207,7 @@ Merit merit_here(Iterate& at) {
 }
 
 double trial_merit(const Iterate& at) {
-  double merit = at.self.active() ? self_energy(at.self, at.work.trial_self) : 0;
+  double merit = self_value(at.self, at.work.trial_self);
   for (std::size_t i = 0; i < at.count(); ++i) {
     const auto& [ribbon, problem, chain, multipliers, before] = at.strips[i];
     NewtonWorkspace& own = at.work.strips[i];
@@ -242,11 +249,14 @@ void accept(const Iterate& at, NewtonReport& report) {
     *at.strips[i].chain = own.current;
     *at.strips[i].multipliers = own.multipliers;
   }
-  if (at.self.active()) report.value.contact += self_energy(at.self, at.work.self);
+  if (!at.self.active()) return;
+  report.value.contact += self_energy(at.self, at.work.self);
+  report.value.friction += friction_value(at.self, at.work.self);
 }
 
 Iterate start(Strips strips, const SelfContact& self, MinimiseWorkspace& work) {
   Iterate at{strips, self, work};
+  at.rubs = !self.rubs.empty();
   if (!work.placed) resize(strips, work);
   work.between.clear();
   for (std::size_t i = 0; i < strips.size(); ++i) {
