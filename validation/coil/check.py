@@ -28,15 +28,20 @@ def measure(runner):
         curve["load"].append(load_at(t))
         curve["distance"].append(distance(line[0], line[-1]))
         curve["slope"].append(max(abs(eta) for eta in frame.on_centerline("eta")))
-    # Twisted: rulings lean. In the coil, a piece of a cylinder, they stand square.
-    coiled = next(i for i, slope in enumerate(curve["slope"]) if slope < 1e-3)
+    # In the twisted strip rulings run almost along it; where it coils they stand up at once.
+    down = curve["load"].index(min(curve["load"]))
+    falls = [curve["slope"][i] - curve["slope"][i + 1] for i in range(down) if curve["load"][i] > 20]
+    coiled = falls.index(max(falls)) + 1
     onset = curve["load"][coiled]
+    back = next(i for i in range(down, len(curve["load"])) if curve["load"][i] >= curve["load"][coiled - 1])
     rows = [
-        at_least("largest ruling slope before the onset", min(curve["slope"][:coiled]), 0.5),
-        between("onset: load at which the twist has gone, over D/w", onset, 30, 50),
-        at_most("largest ruling slope after it, load taken back and brought up again", max(curve["slope"][coiled:]), 1e-3),
-        at_most("distance of the ends in the loose coil, over the length", min(curve["distance"]), 0.6),
-        at_least("the same when it is pulled again: the coil is drawn tight", curve["distance"][-1], 0.98),
+        at_least("largest ruling slope just before the onset", curve["slope"][coiled - 1], 2.2),
+        between("onset: load at which it coils, over D/w", onset, 30, 50),
+        at_most("largest ruling slope at that load when it is pulled again, over the one before the onset",
+                curve["slope"][back] / curve["slope"][coiled - 1], 0.8, "stays coiled"),
+        at_most("distance of the ends in the loose coil, over the length", min(curve["distance"]), 0.75),
+        at_least("the same when it is pulled again: the coil is drawn tight", curve["distance"][-1], 0.9),
+        at_least("smallest distance of the coil's turns, over the length", run.summary["contact"]["minimum_distance"], 1e-9),
     ]
     chosen = [min(range(len(frames)), key=lambda i: abs(frames[i].time - lead - t)) for t in (1.55, 1.65, 2.0)]
     return rows, {"curve": curve, "coiled": coiled, "frames": [frames[i] for i in chosen]}
