@@ -145,6 +145,18 @@ class Motion(ProgramTest):
                              "--set", "solver={method: two-stage, duration: 0.01}")
         self.assertIn("linking number", result.stderr)
 
+    def test_a_profile_of_constant_curvature_is_a_coil(self):
+        shapes = {"coil": "shape: coil, radius: 0.5, slope: 0.1",
+                  "profile": "shape: profile, profile: [{at: 0, curvature: 1.9801980198019802, slope: 0.1}, "
+                             "{at: 1, curvature: 1.9801980198019802, slope: 0.1}]"}
+        for name, shape in shapes.items():
+            self.expect(0, "run", "swing", *IMPLICIT, "--formats", "none", "--out", name, "--set", f"initial={{{shape}}}",
+                        "--set", "solver.duration=0.02")
+        coil, profile = self.history("coil"), self.history("profile")
+        self.assertGreater(coil[0]["elastic"], 0)
+        for a, b in zip(coil, profile, strict=True):
+            self.assertAlmostEqual(b["total"] / a["total"], 1, delta=1e-9)
+
     def test_keys_of_the_other_method_are_refused(self):
         self.expect_refused("check", "swing", "--set", "solver.integrator=bdf2", says=["two-stage", "implicit"])
         self.expect_refused("check", "swing", *IMPLICIT, "--set", "solver.weight_scale=3", says=["implicit", "two-stage"])

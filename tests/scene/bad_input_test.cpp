@@ -56,6 +56,24 @@ TEST(BadInput, SelfContactOfLoadsWithoutAPotential) {
              {"bad.yaml:2:", "contact.self", "use `implicit`"});
 }
 
+TEST(BadInput, FrictionOfTheStripOnItselfNeedsMotion) {
+  expect_all(message_of(strip + "contact: {self: true, friction: 0.2}\nsolver: {method: equilibrium}"),
+             {"bad.yaml:2:", "contact.friction", "use `implicit`"});
+}
+
+TEST(BadInput, Profiles) {
+  const auto profile = [](const std::string& rows) {
+    return message_of(strip + "initial:\n  shape: profile\n" + (rows.empty() ? "" : "  profile: [" + rows + "]\n"));
+  };
+  expect_all(profile(""), {"bad.yaml:2:", "initial.profile", "is missing"});
+  expect_all(profile("{at: 0}"), {"bad.yaml:4:", "at least two places"});
+  expect_all(profile("{at: 0}, {curvature: 1}"), {"bad.yaml:4:", "initial.profile.1.at"});
+  expect_all(profile("{at: 0.5}, {at: 0.5}"), {"initial.profile.1.at", "larger than the one before"});
+  expect_all(profile("{at: 0.5}, {at: 0.6, slope: 0.9}"), {"initial.profile.1", "rulings meet"});
+  expect_all(profile("{at: 0, slope: 2.1}, {at: 1}"), {"initial.profile.0.slope", "square ends"});
+  expect_all(message_of(strip + "initial: {profile: [{at: 0}, {at: 1}]}"), {"bad.yaml:2:", "without `shape: profile`"});
+}
+
 TEST(BadInput, WrongTypes) {
   expect_all(message_of("ribbon: {length: long, width: 1}"),
              {"bad.yaml:1:18: ribbon.length: `long` is not allowed", "must be a number from"});

@@ -225,6 +225,46 @@ SolverOptions build_solver(const Cell& root, const geometry::RibbonSpec& ribbon,
   return options;
 }
 
+namespace {
+
+/// Largest slope of the rulings next to square ends, beyond which they would meet there.
+double most_slope(const geometry::RibbonSpec& ribbon) {
+  const double least = ribbon.spacing.empty() ? 1.0 : *std::min_element(ribbon.spacing.begin(), ribbon.spacing.end());
+  const double sum =
+      ribbon.spacing.empty() ? ribbon.segments : std::accumulate(ribbon.spacing.begin(), ribbon.spacing.end(), 0.0);
+  return 2 * ribbon.length * least / sum / ribbon.width;
+}
+
+void check_end_slope(const Cell& cell, const geometry::RibbonSpec& ribbon) {
+  const double most = most_slope(ribbon);
+  if (ribbon.free_rulings || std::abs(number(cell)) < most) return;
+  fail(cell, fmt::format("makes rulings meet next to the square ends; below {:g} in size, or with fewer segments, or "
+                         "with `ribbon.free_rulings`",
+                         most));
+}
+
+std::vector<ProfileRow> profile_of(const Cell& cell, const geometry::RibbonSpec& ribbon) {
+  if (cell.value == nullptr) fail(cell, "is missing; `shape: profile` wants it");
+  std::vector<ProfileRow> rows;
+  for (std::size_t i = 0; i < count(cell); ++i) {
+    const Cell row = element(cell, i);
+    rows.push_back({number(child(row, "at")), number(child(row, "curvature")), number(child(row, "slope"))});
+    if (i == 0) continue;
+    const double way = ribbon.length * (rows[i].at - rows[i - 1].at);
+    if (!(way > 0)) fail(child(row, "at"), "must be larger than the one before");
+    if (0.5 * ribbon.width * std::abs(rows[i].slope - rows[i - 1].slope) >= way) {
+      fail(row, "makes rulings meet: the slope may change by less than 2/width per length");
+    }
+  }
+  if (rows.size() < 2) fail(cell, "must have at least two places");
+  for (const std::size_t end : {std::size_t{0}, rows.size() - 1}) {
+    check_end_slope(child(element(cell, end), "slope"), ribbon);
+  }
+  return rows;
+}
+
+}  // namespace
+
 InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon) {
   const Cell cell = child(root, "initial");
   const bool loop = ribbon.closure == geometry::Closure::loop;
@@ -235,9 +275,12 @@ InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon)
   if (const Cell shape = child(cell, "shape"); shape.value != nullptr) {
     initial.shape = chosen<InitialShape>(shape, {{"straight", InitialShape::straight},
                                                  {"coil", InitialShape::coil},
+                                                 {"profile", InitialShape::profile},
                                                  {"closed", InitialShape::closed},
                                                  {"equilibrium", InitialShape::equilibrium}});
-    if (loop && (initial.shape == InitialShape::straight || initial.shape == InitialShape::coil)) {
+    const bool open = initial.shape == InitialShape::straight || initial.shape == InitialShape::coil ||
+                      initial.shape == InitialShape::profile;
+    if (loop && open) {
       fail(shape, "is open; a loop starts `closed` or at `equilibrium`");
     }
     if (!loop && initial.shape == InitialShape::closed) fail(shape, "is for loops; the strip is open");
@@ -250,15 +293,13 @@ InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon)
   if (initial.shape == InitialShape::coil) {
     initial.radius = number(child(cell, "radius"));
     initial.slope = number(child(cell, "slope"));
-    const double least = ribbon.spacing.empty() ? 1.0 : *std::min_element(ribbon.spacing.begin(), ribbon.spacing.end());
-    const double sum =
-        ribbon.spacing.empty() ? ribbon.segments : std::accumulate(ribbon.spacing.begin(), ribbon.spacing.end(), 0.0);
-    const double most = 2 * ribbon.length * least / sum / ribbon.width;
-    if (!ribbon.free_rulings && std::abs(initial.slope) >= most) {
-      fail(child(cell, "slope"), fmt::format("makes rulings meet next to the square ends; below {:g} in size, or with "
-                                             "fewer segments, or with `ribbon.free_rulings`",
-                                             most));
-    }
+    check_end_slope(child(cell, "slope"), ribbon);
+  }
+  const Cell profile = child(cell, "profile");
+  if (initial.shape == InitialShape::profile) {
+    initial.profile = profile_of(profile, ribbon);
+  } else if (profile.value != nullptr) {
+    fail(profile, "has no effect without `shape: profile`");
   }
   initial.place = place_of(root, cell);
   initial.velocity = vector(child(cell, "velocity"));

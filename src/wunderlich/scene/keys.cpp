@@ -205,8 +205,9 @@ const std::vector<Key> before_solver = {
      0,
      0,
      "",
-     {"straight", "coil", "closed", "equilibrium"},
-     "`straight`: undeformed. `coil`: constant curvature and ruling slope. `closed`: a loop just closed, not yet at "
+     {"straight", "coil", "profile", "closed", "equilibrium"},
+     "`straight`: undeformed. `coil`: constant curvature and ruling slope. `profile`: both as given by "
+     "`initial.profile`. `closed`: a loop just closed, not yet at "
      "rest. `equilibrium`: at rest under the supports and loads of time 0 (of a free strip: under none). Default: "
      "`straight`, for loops "
      "`equilibrium`."},
@@ -243,6 +244,19 @@ const std::vector<Key> before_solver = {
      "[0, 0, 1]",
      {},
      "And the direction d1 there, perpendicular to the tangent; any length."},
+    {"initial.profile",
+     Type::list,
+     "",
+     2,
+     10000,
+     "",
+     {},
+     "How the strip is bent: curvature of its centerline and slope of its rulings, linear between these places, "
+     "constant "
+     "beyond them. Any strip whose curvature is nowhere 0 but at its ends can be given so."},
+    {"initial.profile.*.at", Type::number, "", 0, 1, "", {}, "Arc length over length, increasing. Required."},
+    {"initial.profile.*.curvature", Type::number, "1/m", -1e6, 1e6, "0", {}, "Of the centerline."},
+    {"initial.profile.*.slope", Type::number, "", -10, 10, "0", {}, "Eta: torsion over curvature."},
     {"initial.velocity", Type::vector, "m/s", -1e6, 1e6, "[0, 0, 0]", {}, "Velocity of the whole strip."},
     {"initial.spin", Type::vector, "rad/s", -1e6, 1e6, "[0, 0, 0]", {}, "Angular velocity about the center of mass."},
 };

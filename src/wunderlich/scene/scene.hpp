@@ -39,16 +39,25 @@ struct SolverOptions {
 enum class InitialShape {
   straight,     ///< undeformed
   coil,         ///< constant curvature and ruling slope
+  profile,      ///< both linear between given places
   closed,       ///< a loop where its path has just closed it
   equilibrium,  ///< at rest under the supports and loads of time 0
+};
+
+/// How a strip is bent at one place.
+struct ProfileRow {
+  double at = 0;         ///< arc length over length
+  double curvature = 0;  ///< of the centerline [1/m]
+  double slope = 0;      ///< eta
 };
 
 /// Where a motion starts.
 struct InitialState {
   InitialShape shape = InitialShape::straight;
-  double radius = 1;             ///< of a coil [m]
-  double slope = 0;              ///< eta of a coil
-  std::optional<Pose> place;     ///< where a strip that nothing holds has its first node and segment
+  double radius = 1;          ///< of a coil [m]
+  double slope = 0;           ///< eta of a coil
+  std::optional<Pose> place;  ///< where a strip that nothing holds has its first node and segment
+  std::vector<ProfileRow> profile;
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   Vec3 spin = Vec3::Zero();      ///< about the center of mass [rad/s]
 };

@@ -114,12 +114,38 @@ State coil(const Scene& scene, const Ribbon& ribbon) {
   return geometry::state_of(ribbon, chain, 0);
 }
 
+/// Curvature and slope at a share of the length.
+ProfileRow interpolate(const std::vector<ProfileRow>& rows, double at) {
+  if (at <= rows.front().at) return rows.front();
+  if (at >= rows.back().at) return rows.back();
+  std::size_t i = 1;
+  while (rows[i].at < at) ++i;
+  const ProfileRow &a = rows[i - 1], &b = rows[i];
+  const double f = (at - a.at) / (b.at - a.at);
+  return {at, (1 - f) * a.curvature + f * b.curvature, (1 - f) * a.slope + f * b.slope};
+}
+
+/// Bent as given. Exactly isometric as well.
+State profiled(const Scene& scene, const Ribbon& ribbon) {
+  const State straight = geometry::straight_state(ribbon);
+  geometry::Chain chain = geometry::straight_chain(ribbon, {Vec3::Zero(), straight.q.front()});
+  for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
+    const int node = static_cast<int>(i);
+    const ProfileRow row = interpolate(scene.initial.profile, ribbon.node_u[i] / ribbon.length);
+    if (geometry::kappa_is_free(ribbon, node)) chain.kappa[i] = row.curvature;
+    if (geometry::eta_is_free(ribbon, node)) chain.eta[i] = row.slope;
+  }
+  return geometry::state_of(ribbon, chain, 0);
+}
+
 Start shape_of(const Scene& scene, const Ribbon& ribbon) {
   switch (scene.initial.shape) {
     case InitialShape::straight:
       return {geometry::straight_state(ribbon), ""};
     case InitialShape::coil:
       return {coil(scene, ribbon), ""};
+    case InitialShape::profile:
+      return {profiled(scene, ribbon), ""};
     case InitialShape::equilibrium:
     case InitialShape::closed:
       return along_path(scene, ribbon);
@@ -183,7 +209,7 @@ namespace {
 /// Other starts are not known before the run.
 bool start_is_known(const Scene& scene) {
   return scene.solver.method == Method::equilibrium || scene.initial.shape == InitialShape::straight ||
-         scene.initial.shape == InitialShape::coil;
+         scene.initial.shape == InitialShape::coil || scene.initial.shape == InitialShape::profile;
 }
 
 void check_obstacles(const Scene& scene) {
