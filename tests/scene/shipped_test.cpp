@@ -40,6 +40,7 @@ TEST(ShippedScenes, AreThoseOfTheContract) {
                            "slide-cylinder",
                            "loop-2pi",
                            "pile",
+                           "knot",
                            "paper-chain",
                            "belt",
                            "belt-release-stiff",
