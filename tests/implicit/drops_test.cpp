@@ -35,8 +35,8 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-/// Distance to a solid in its own frame, written apart from the solver's. What has edges, which can reach between the
-/// solver's points, counts as far away: boxes, and cylinders that end.
+/// Distance to a solid in its own frame, not below 0 for boxes, written apart from the solver's. Cylinders that end
+/// count as far away: their rims can reach between the solver's points.
 double distance_to(const contact::Shape& shape, const Vec3& p) {
   if (std::holds_alternative<contact::HalfSpace>(shape)) return p.z();
   if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return p.norm() - sphere->radius;
@@ -48,6 +48,7 @@ double distance_to(const contact::Shape& shape, const Vec3& p) {
     if (cylinder->half_length < kEndless) return 1e9;
     return std::hypot(p.x(), p.y()) - cylinder->radius;
   }
+  if (const auto* box = std::get_if<contact::Box>(&shape)) return (p.cwiseAbs() - box->half_size).cwiseMax(0).norm();
   return 1e9;
 }
 
