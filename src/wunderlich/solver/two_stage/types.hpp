@@ -160,7 +160,7 @@ struct StepReport {
   int touching = 0;            ///< points that solids push in the last substep
   double nearest = std::numeric_limits<double>::infinity();  ///< smallest distance to a solid in the step, a bound from
                                                              ///< below, beyond the thickness [m]
-  Vec3 push = Vec3::Zero();  ///< what solids exert on the strip in the last substep [N]
+  Vec3 push = Vec3::Zero();                                  ///< what solids exert on the strip in the last substep [N]
   ConstraintErrors constraints;
   double contact_seconds = 0;
   double ode_seconds = 0, opt_seconds = 0, other_seconds = 0;
