@@ -82,8 +82,8 @@ class BadInput(ProgramTest):
         for method in ("implicit", "two-stage", "equilibrium"):
             self.refused(solid % (method, ""), "obstacles.0: the strip starts", "inside")
 
-    def test_keys_of_later_versions(self):
-        self.refused(STRIP + "ribbons: []\n", "bad.yaml:7:", "ribbons", "not supported yet by this version")
+    def test_one_ribbon_and_several(self):
+        self.refused(STRIP + "ribbons: []\n", "bad.yaml:2:", "ribbon: contradicts `ribbons`")
 
     def test_output_folder_that_cannot_be_written(self):
         self.write("file", "something")

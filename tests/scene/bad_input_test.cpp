@@ -65,7 +65,7 @@ TEST(BadInput, Profiles) {
   const auto profile = [](const std::string& rows) {
     return message_of(strip + "initial:\n  shape: profile\n" + (rows.empty() ? "" : "  profile: [" + rows + "]\n"));
   };
-  expect_all(profile(""), {"bad.yaml:2:", "initial.profile", "is missing"});
+  expect_all(profile(""), {"bad.yaml:3:", "initial.profile", "is missing"});
   expect_all(profile("{at: 0}"), {"bad.yaml:4:", "at least two places"});
   expect_all(profile("{at: 0}, {curvature: 1}"), {"bad.yaml:4:", "initial.profile.1.at"});
   expect_all(profile("{at: 0.5}, {at: 0.5}"), {"initial.profile.1.at", "larger than the one before"});
