@@ -4,9 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
-cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz --target fuzz_scene
+cmake --preset sanitize >/dev/null
+cmake --build --preset sanitize --target fuzz_scene
 mkdir -p build/fuzz/corpus
-build/fuzz/fuzz_scene -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+build/sanitize/fuzz_scene -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
   -dict=tests/fuzz/scene.dict \
   -artifact_prefix=build/fuzz/ build/fuzz/corpus scenes tests/fuzz/seeds tests/scene/crashers

@@ -23,18 +23,20 @@ const Vec3 kAxis = Vec3(0.3, -0.5, 0.7).normalized();
 /// Angle of the rotation between two frames, whatever the signs of the quaternions.
 double angle_between(const Quat& a, const Quat& b) { return math::log_map(a.conjugate() * b).norm(); }
 
+// A handful of roundings: how the mathematical library computes sines, and where it contracts, differs between
+// machines.
 TEST(Rotation, LogarithmInvertsTheExponentialUpToPi) {
   for (double angle : {0.0, 1e-200, 1e-12, 1e-5, 3e-5, 0.1, 1.0, 3.0, kPi - 1e-3, kPi - 1e-9}) {
     SCOPED_TRACE(angle);
     const Vec3 v = angle * kAxis;
     const Quat q = math::exp_map(v);
     EXPECT_NEAR(q.norm(), 1, 1e-15);
-    EXPECT_LE((math::log_map(q) - v).norm(), 4e-16 * (1 + angle));
-    EXPECT_LE((math::log_map(Quat(-3 * q.coeffs())) - v).norm(), 4e-16 * (1 + angle));
+    EXPECT_LE((math::log_map(q) - v).norm(), 1e-15 * (1 + angle));
+    EXPECT_LE((math::log_map(Quat(-3 * q.coeffs())) - v).norm(), 1e-15 * (1 + angle));
     const Mat3 reference = Eigen::AngleAxisd(angle, kAxis).toRotationMatrix();
-    EXPECT_LE((q.toRotationMatrix() - reference).norm(), 2e-15);
+    EXPECT_LE((q.toRotationMatrix() - reference).norm(), 4e-15);
   }
-  EXPECT_NEAR(math::log_map(math::exp_map((kPi + 0.1) * kAxis)).norm(), kPi - 0.1, 1e-15);
+  EXPECT_NEAR(math::log_map(math::exp_map((kPi + 0.1) * kAxis)).norm(), kPi - 0.1, 4e-15);
 }
 
 TEST(Rotation, JacobiansAreTheDerivatives) {

@@ -202,7 +202,7 @@ void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surround
   place_meshes(surroundings, t, problem.stiffness, problem.meshes);
   // Points that are c apart and c^2/(8 R) off a solid of radius R leave it room between them. Cells lean by up to 45
   // degrees, so that their diagonals' squares are up to four of their sides'. Half of the distance is for that.
-  const double cell = std::sqrt(radius * d);
+  const double cell = radius < kInfinity ? std::sqrt(radius * d) : kInfinity;
   const auto cells = [&](double size) {
     return static_cast<int>(std::clamp(std::ceil(size / cell), 1.0, static_cast<double>(kMostCells)));
   };

@@ -216,7 +216,8 @@ void bound_row(const Ribbon& ribbon, const geometry::State& shape, std::size_t s
 void move_all(const Ribbon& ribbon, const std::vector<Vec7>& motion, double share, Workspace& work,
               geometry::State& shape) {
   work.edge_start.resize(ribbon.rest_length.size());
-  for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) work.edge_start[s] = shape.r[s + 1] - shape.r[s];
+  for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s)
+    work.edge_start[s] = (shape.r[s + 1] - shape.r[s]).normalized();
   for (std::size_t b = 0; b < motion.size(); ++b) {
     shape.r[b] += share * motion[b].head<3>();
     shape.eta[b] += share * motion[b][kEtaPlace];
@@ -227,7 +228,7 @@ void move_all(const Ribbon& ribbon, const std::vector<Vec7>& motion, double shar
   }
   for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) {
     if (work.holding.frame_held[s]) continue;
-    const Quat turn = Quat::FromTwoVectors(work.edge_start[s], shape.r[s + 1] - shape.r[s]);
+    const Quat turn = math::shortest_rotation(work.edge_start[s], (shape.r[s + 1] - shape.r[s]).normalized());
     const Vec3 theta = share * motion[s].segment<3>(kThetaPlace);
     shape.q[s] = (turn * shape.q[s] * math::exp_map(theta)).normalized();
   }

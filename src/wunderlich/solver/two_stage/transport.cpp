@@ -71,7 +71,7 @@ void transport_frames(const Ribbon& ribbon, const std::vector<double>& spin, dou
   work.carried.resize(shape.q.size());
   for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) {
     const Vec3 before = (work.r_start[s + 1] - work.r_start[s]).normalized();
-    const Quat turn = Quat::FromTwoVectors(before, edge_direction(shape, s));
+    const Quat turn = math::shortest_rotation(before, edge_direction(shape, s));
     work.carried[s] = (turn * shape.q[s] * math::exp_map(Vec3(0, 0, spin[s] * dt))).normalized();
     if (!work.holding.frame_held[s]) shape.q[s] = work.carried[s];
   }
