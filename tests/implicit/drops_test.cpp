@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -17,8 +18,7 @@ namespace wunderlich::testing {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kClear = 3e-3;   // m between the strip and solids at the start
-constexpr double kEndless = 1e6;  // m
+constexpr double kClear = 3e-3;  // m between the strip and solids at the start
 
 /// The same numbers everywhere, which the library's distributions do not promise.
 class Dice {
@@ -35,8 +35,7 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-/// Distance to a solid in its own frame, not below 0 for boxes, written apart from the solver's. Cylinders that end
-/// count as far away: their rims can reach between the solver's points.
+/// Distance to a solid in its own frame, not below 0 for boxes and ends, written apart from the solver's.
 double distance_to(const contact::Shape& shape, const Vec3& p) {
   if (std::holds_alternative<contact::HalfSpace>(shape)) return p.z();
   if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return p.norm() - sphere->radius;
@@ -45,8 +44,9 @@ double distance_to(const contact::Shape& shape, const Vec3& p) {
     return (p - Vec3(0, 0, z)).norm() - capsule->radius;
   }
   if (const auto* cylinder = std::get_if<contact::Cylinder>(&shape)) {
-    if (cylinder->half_length < kEndless) return 1e9;
-    return std::hypot(p.x(), p.y()) - cylinder->radius;
+    const double out = std::hypot(p.x(), p.y()) - cylinder->radius;
+    if (!std::isfinite(cylinder->half_length)) return out;
+    return std::hypot(std::max(out, 0.0), std::max(std::abs(p.z()) - cylinder->half_length, 0.0));
   }
   if (const auto* box = std::get_if<contact::Box>(&shape)) return (p.cwiseAbs() - box->half_size).cwiseMax(0).norm();
   return 1e9;
@@ -84,7 +84,7 @@ contact::Shape random_shape(Dice& dice) {
     case 1:
       return contact::Sphere{radius};
     case 2:
-      return contact::Cylinder{radius, dice.one_in(2) ? half : 2 * kEndless};
+      return contact::Cylinder{radius, dice.one_in(2) ? half : std::numeric_limits<double>::infinity()};
     case 3:
       return contact::Capsule{radius, half};
     default:
@@ -145,7 +145,7 @@ Drop random_drop(unsigned seed) {
   const int count = dice.whole(1, 4);
   for (int tries = 0; static_cast<int>(surroundings.obstacles.size()) < count && tries < 100; ++tries) {
     const constraint::Obstacle solid = random_solid(dice);
-    // What has edges is far from what is far from the ball or capsule around it.
+    // What has edges is far from what is far from the ball around it or from the capsule around a cylinder's rims.
     constraint::Obstacle seen = solid;
     if (const auto* box = std::get_if<contact::Box>(&solid.shape)) seen.shape = contact::Sphere{box->half_size.norm()};
     if (const auto* cylinder = std::get_if<contact::Cylinder>(&solid.shape))

@@ -58,7 +58,7 @@ MeshProblem two_solids(const Vec3& middle, Random& random) {
   for (int i = 0; i < 2; ++i) {
     solver::MeshSolid solid;
     solid.mesh = std::make_shared<const contact::TriangleMesh>(contact::make_mesh(vertices, box.triangles));
-    solid.pose = {middle + (0.3 + 0.1 * i) * random.vector().normalized(), math::exp_map(random.vector())};
+    stand({middle + (0.3 + 0.1 * i) * random.vector().normalized(), math::exp_map(random.vector())}, solid);
     problem.solids.push_back(solid);
   }
   return problem;
@@ -140,7 +140,7 @@ struct Scene {
     problem.stiffness = 1;
     problem.solids.emplace_back();
     problem.solids[0].mesh = std::make_shared<const contact::TriangleMesh>(contact::mesh_of(box));
-    problem.solids[0].pose = pose;
+    stand(pose, problem.solids[0]);
   }
   /// A strip along x from `start`, its width along y.
   MeshPoints points(const Vec3& start) const {
@@ -177,6 +177,23 @@ TEST(MeshContact, KnowsHowNearItIs) {
   const double far = mesh_distance(box.problem, box.points({-0.5, 0, 1.1}));                     // no more than it is
   EXPECT_LE(far, 1 + 1e-14);
   EXPECT_GT(far, 0.99);
+}
+
+// The rim of a cylinder's end, which no point of the strip need be near to.
+TEST(MeshContact, GoesAroundTheEndsOfACylinder) {
+  const contact::Cylinder cylinder{0.05, 0.3};
+  for (const int side : {-1, 1}) {
+    const contact::TriangleMesh end = contact::end_of(cylinder, side, 1e-3);
+    EXPECT_EQ(contact::find_fault(end.vertices, end.triangles).fault, contact::MeshFault::none);
+    for (int i = 0; i < 720; ++i) {
+      const double angle = i * std::acos(0.0) / 180;
+      const Vec3 rim(0.05 * std::cos(angle), 0.05 * std::sin(angle), side * 0.3);
+      const double inside = contact::distance(end, rim).value;
+      EXPECT_LE(inside, 1e-12);
+      EXPECT_GT(inside, -1e-3);
+    }
+    EXPECT_NEAR(contact::distance(end, {0, 0, side * 0.31}).value, 0.01, 1e-12);
+  }
 }
 
 TEST(MeshContact, LetsNothingThrough) {

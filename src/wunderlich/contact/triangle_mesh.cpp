@@ -10,6 +10,8 @@ namespace wunderlich::contact {
 
 namespace {
 
+constexpr double kPi = EIGEN_PI;
+
 constexpr double kFlat = 1e-9;  // a triangle's height over its length, sine of the angle between faces
 
 using Triangles = std::vector<std::array<int, 3>>;
@@ -136,6 +138,29 @@ TriangleMesh mesh_of(const Box& box) {
   return make_mesh(std::move(vertices), std::move(triangles));
 }
 
+TriangleMesh end_of(const Cylinder& cylinder, int side, double beyond) {
+  const double half_angle = std::acos(cylinder.radius / (cylinder.radius + beyond));
+  const int sides = static_cast<int>(std::clamp(std::ceil(kPi / half_angle), 8.0, 2000.0));
+  const double radius = cylinder.radius / std::cos(kPi / sides), end = side * cylinder.half_length;
+  const double other = end - side * std::min(cylinder.half_length, 0.25 * cylinder.radius);
+  std::vector<Vec3> vertices;
+  for (int k = 0; k < sides; ++k) {
+    const double angle = 2 * kPi * k / sides;
+    for (const double z : {std::min(end, other), std::max(end, other)})
+      vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  Triangles triangles;
+  for (int k = 0; k < sides; ++k) {
+    const int low = 2 * k, next = 2 * ((k + 1) % sides);
+    triangles.push_back({low, next, next + 1});
+    triangles.push_back({low, next + 1, low + 1});
+    if (k == 0 || k == sides - 1) continue;
+    triangles.push_back({0, next, low});
+    triangles.push_back({1, low + 1, next + 1});
+  }
+  return make_mesh(std::move(vertices), std::move(triangles));
+}
+
 double winding(const TriangleMesh& mesh, const Vec3& point) {
   double sum = 0;  // of solid angles
   for (const auto& triangle : mesh.triangles) {
@@ -144,7 +169,7 @@ double winding(const TriangleMesh& mesh, const Vec3& point) {
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return sum / (4 * EIGEN_PI);
+  return sum / (4 * kPi);
 }
 
 Distance distance(const TriangleMesh& mesh, const Vec3& point) {

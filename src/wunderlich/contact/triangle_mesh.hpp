@@ -39,6 +39,10 @@ TriangleMesh make_mesh(std::vector<Vec3> vertices, std::vector<std::array<int, 3
 
 TriangleMesh mesh_of(const Box& box);
 
+/// The last piece of a cylinder before its end at z = half_length, or z = -half_length for side = -1, as a prism around
+/// it that stands out nowhere by more than `beyond` [m].
+TriangleMesh end_of(const Cylinder& cylinder, int side, double beyond);
+
 /// Times that the surface goes round a point: 1 inside, 0 outside, to rounding (vanOosterom1983).
 double winding(const TriangleMesh& mesh, const Vec3& point);
 

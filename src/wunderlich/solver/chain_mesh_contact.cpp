@@ -22,6 +22,8 @@ using geometry::Ribbon;
 namespace {
 
 constexpr double kParallel = 1e-3;  // sine squared between two edges below which their barrier is weakened
+constexpr double kRim = 0.125;      // of the barrier's distance: how far a prism around a cylinder's end may stand out
+constexpr double kNotFar = 0.25;    // of the width: what is nearer to a solid's box is looked at
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const PairPoints& facet_of(const MeshProblem& problem, const MeshPoints& points, std::size_t solid,
@@ -52,6 +54,32 @@ double weight_of(const Ribbon& ribbon, const MeshProblem& problem, const FacetPa
 /// Distance between two boxes, 0 where they overlap.
 double apart(const Extent& a, const Extent& b) {
   return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+}
+
+/// Around all corners, in space.
+Extent box_around(const Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
+  Extent box{k.r.front(), k.r.front()};
+  const double v = 0.5 * ribbon.width;
+  for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) {
+    for (std::size_t i = s; i < s + 2; ++i) {
+      const Vec3 ruling = v * (k.frame[s].col(1) + chain.eta[i] * k.frame[s].col(2));
+      box.add(k.r[i] - ruling);
+      box.add(k.r[i] + ruling);
+    }
+  }
+  return box;
+}
+
+/// All facets' corners in a solid's own frame.
+void place_facets(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, const Pose& pose, PairPoints* facets) {
+  const Mat3 to_own = pose.frame.conjugate().toRotationMatrix();
+  for (std::size_t s = 0; s < ribbon.rest_length.size(); ++s) {
+    const Mat3 frame = to_own * k.frame[s];
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double v = (c % 2 == 0 ? -0.5 : 0.5) * ribbon.width, eta = chain.eta[s + c / 2];
+      facets[s][c] = to_own * (k.r[s + c / 2] - pose.position) + v * (frame.col(1) + eta * frame.col(2));
+    }
+  }
 }
 
 /// How a corner of a facet moves.
@@ -99,25 +127,41 @@ bool is_mesh(const contact::Shape& shape) {
   return std::holds_alternative<contact::Box>(shape) || std::holds_alternative<contact::Polyhedron>(shape);
 }
 
+void stand(const Pose& pose, MeshSolid& solid) {
+  solid.pose = pose;
+  const Mat3 frame = pose.frame.toRotationMatrix();
+  const Vec3 middle = pose.position + frame * (0.5 * (solid.mesh->whole.low + solid.mesh->whole.high));
+  const Vec3 half = frame.cwiseAbs() * (0.5 * (solid.mesh->whole.high - solid.mesh->whole.low));
+  solid.extent = {middle - half, middle + half};
+}
+
 void place_meshes(const constraint::Surroundings& surroundings, double t, double stiffness, MeshProblem& problem) {
   problem.distance = surroundings.contact.distance;
   problem.thickness = surroundings.contact.thickness;
   problem.stiffness = stiffness;
   std::size_t count = 0;
   for (const constraint::Obstacle& obstacle : surroundings.obstacles) {
-    if (!is_mesh(obstacle.shape)) continue;
-    if (count == problem.solids.size()) problem.solids.emplace_back();
-    MeshSolid& solid = problem.solids[count++];
-    solid.pose = constraint::pose_at(obstacle.motion, t);
-    solid.friction = obstacle.friction;
+    const auto place = [&](const Vec4& sizes, const auto& make) {
+      if (count == problem.solids.size()) problem.solids.emplace_back();
+      MeshSolid& solid = problem.solids[count++];
+      solid.friction = obstacle.friction;
+      if (!solid.mesh || solid.made_for != sizes) solid.mesh = make();
+      solid.made_for = sizes;
+      stand(constraint::pose_at(obstacle.motion, t), solid);
+    };
     if (const auto* polyhedron = std::get_if<contact::Polyhedron>(&obstacle.shape)) {
-      solid.mesh = polyhedron->mesh;
-      continue;
+      place(Vec4::Zero(), [&] { return polyhedron->mesh; });
+    } else if (const auto* box = std::get_if<contact::Box>(&obstacle.shape)) {
+      place({box->half_size.x(), box->half_size.y(), box->half_size.z(), 0},
+            [&] { return std::make_shared<const TriangleMesh>(contact::mesh_of(*box)); });
+    } else if (const auto* cylinder = std::get_if<contact::Cylinder>(&obstacle.shape)) {
+      if (!std::isfinite(cylinder->half_length)) continue;
+      const double beyond = kRim * problem.distance;
+      for (const int side : {-1, 1}) {
+        place({cylinder->radius, cylinder->half_length, static_cast<double>(side), beyond},
+              [&] { return std::make_shared<const TriangleMesh>(contact::end_of(*cylinder, side, beyond)); });
+      }
     }
-    const auto& box = std::get<contact::Box>(obstacle.shape);
-    if (solid.mesh && solid.half_size == box.half_size) continue;
-    solid.mesh = std::make_shared<const TriangleMesh>(contact::mesh_of(box));
-    solid.half_size = box.half_size;
   }
   problem.solids.resize(count);
 }
@@ -126,21 +170,22 @@ void find_mesh_pairs(const Ribbon& ribbon, const MeshProblem& problem, const Cha
                      MeshPoints& points) {
   const std::size_t n = ribbon.rest_length.size();
   points.facets.resize(problem.solids.size() * n);
+  points.placed.assign(problem.solids.size(), 0);
   points.pairs.clear();
   points.beyond = kInfinity;
+  if (problem.solids.empty()) return;
+  points.strip = box_around(ribbon, chain, k);
   const double far = problem.thickness + problem.distance;
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     const MeshSolid& solid = problem.solids[i];
-    const Mat3 to_own = solid.pose.frame.conjugate().toRotationMatrix();
-    for (std::size_t s = 0; s < n; ++s) {
-      const Mat3 frame = to_own * k.frame[s];
-      for (std::size_t c = 0; c < 4; ++c) {
-        const double v = (c % 2 == 0 ? -0.5 : 0.5) * ribbon.width, eta = chain.eta[s + c / 2];
-        points.facets[i * n + s][c] =
-            to_own * (k.r[s + c / 2] - solid.pose.position) + v * (frame.col(1) + eta * frame.col(2));
-      }
+    const double away = apart(points.strip, solid.extent);
+    if (away > far + kNotFar * ribbon.width) {
+      points.beyond = std::min(points.beyond, away);
+      continue;
     }
-    const PairPoints* const facets = points.facets.data() + i * n;
+    points.placed[i] = 1;
+    PairPoints* const facets = points.facets.data() + i * n;
+    place_facets(ribbon, chain, k, solid.pose, facets);
     gather(n, points.search, [&](std::size_t s) {
       const double least = apart(box_of(facets[s]), solid.mesh->whole);
       points.beyond = std::min(points.beyond, std::max(far, least));

@@ -17,9 +17,10 @@ struct Friction;
 
 struct MeshSolid {
   std::shared_ptr<const contact::TriangleMesh> mesh;
-  Vec3 half_size = Vec3::Zero();  ///< of the box that the mesh was made for
+  Vec4 made_for = Vec4::Zero();  ///< sizes of the box, or of the cylinder's end, that the mesh was made for
   Pose pose;
-  double friction = 0;  ///< Coulomb's coefficient
+  contact::Extent extent;  ///< in space
+  double friction = 0;     ///< Coulomb's coefficient
 };
 
 /// Solids of triangles at one time.
@@ -32,6 +33,8 @@ struct MeshProblem {
 
 /// A strip beside all solids of triangles.
 struct MeshPoints {
+  contact::Extent strip;                    ///< around all of the strip, in space
+  std::vector<char> placed;                 ///< which solids the strip is not far from; others have no facets
   std::vector<contact::PairPoints> facets;  ///< corners in the solid's own frame: all segments of the first solid, ...
   std::vector<FacetPair> pairs;             ///< nearer than thickness and distance
   double beyond = 0;                        ///< where there are none: what the distance is at least [m]
@@ -41,7 +44,11 @@ struct MeshPoints {
 /// Is a solid one of triangles?
 bool is_mesh(const contact::Shape& shape);
 
-/// Those among the surroundings' solids at a time. Meshes of boxes are made once.
+/// Puts a solid, which has its mesh, where it is from now on.
+void stand(const Pose& pose, MeshSolid& solid);
+
+/// Those among the surroundings' solids at a time, and the flat ends of cylinders, whose rims reach between the points
+/// that their sides are felt by. Meshes of boxes and ends are made once.
 void place_meshes(const constraint::Surroundings& surroundings, double t, double stiffness, MeshProblem& problem);
 
 void find_mesh_pairs(const geometry::Ribbon& ribbon, const MeshProblem& problem, const geometry::Chain& chain,
@@ -51,7 +58,8 @@ void find_mesh_pairs(const geometry::Ribbon& ribbon, const MeshProblem& problem,
 double mesh_energy(const geometry::Ribbon& ribbon, const MeshProblem& problem, const MeshPoints& points);
 
 /// May the facets' corners go from one place to the other in straight lines? Not if a pair would touch on the way, or
-/// lose more than nine tenths of its gap within the barrier's distance. `search` is of use to the next one.
+/// lose more than nine tenths of its gap within the barrier's distance, or if one goes from far away into a solid's box
+/// at once. `search` is of use to the next one.
 bool mesh_may_go(const MeshProblem& problem, const MeshPoints& from, const MeshPoints& to, PairSearch& search);
 
 /// Smallest distance beyond the thickness [m]; where nothing is near a bound from below, infinite without solids.
