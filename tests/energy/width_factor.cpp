@@ -101,11 +101,29 @@ TEST(WidthFactor, DerivativesOfEveryKind) {
   check([](double x) { return energy::ruling_barrier(x); });
 }
 
+// The wall begins without a jump in what is used of it, and keeps what it keeps off well above rounding.
+TEST(WidthFactor, BarrierEndsInAWall) {
+  const double edge = std::sqrt(1 - 1e-3);
+  const WidthFactor before = energy::ruling_barrier(edge - 1e-12), after = energy::ruling_barrier(edge + 1e-12);
+  EXPECT_NEAR(after.value / before.value, 1, 1e-8);
+  EXPECT_NEAR(after.first / before.first, 1, 1e-6);
+  EXPECT_NEAR(after.second / before.second, 1, 1e-4);
+  for (const double x : {0.9996, -0.9999, 0.99999}) {
+    SCOPED_TRACE(x);
+    const double h = 1e-4 * (1 - std::abs(x));
+    const auto value = [](double at) { return energy::ruling_barrier(at).value; };
+    const auto first = [](double at) { return energy::ruling_barrier(at).first; };
+    EXPECT_NEAR((value(x + h) - value(x - h)) / (2 * h) / first(x), 1, 1e-6);
+    EXPECT_NEAR((first(x + h) - first(x - h)) / (2 * h) / energy::ruling_barrier(x).second, 1, 1e-6);
+  }
+  EXPECT_GT(energy::ruling_barrier(1 - 1e-7).first, 1e18);  // a logarithm's is 1e7
+}
+
 /// Four arguments at once: all in reach of the series, none, some, and one where the energy is infinite.
 TEST(WidthFactor, OfFourIsThatOfEach) {
   const auto check = [](const auto& factor) {
     for (const math::Four& x : {math::Four{1e-9, 0.03, -0.19, 0.0}, math::Four{0.3, -0.5, 0.9, -0.99},
-                                math::Four{0.1, -0.7, 0.1999, 0.2001}, math::Four{0.1, 1.0, -1.5, 0.6}}) {
+                                math::Four{0.1, -0.7, 0.1999, 0.2001}, math::Four{0.1, 1.0, -1.5, 0.6}, math::Four{0.1, 0.9999, -0.3, -0.999}}) {
       const energy::WidthFactor<math::Four> four = factor(x);
       for (int lane = 0; lane < 4; ++lane) {
         SCOPED_TRACE(x[lane]);

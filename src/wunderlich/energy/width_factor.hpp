@@ -103,14 +103,32 @@ inline WidthFactor<Real> finite_barrier(Real x) {
   return {log_barrier(x), 2 * x * inverse, 2 * (1 + x * x) * inverse * inverse};
 }
 
+constexpr double kWall = 1e-3;  // 1 - x^2 where the barrier turns into a wall
+
+/// The cube of what kWall/(1 - x^2) exceeds 1 by. In motions the bound takes up impulses, the larger a force the shorter
+/// the step: against a logarithm alone 1 - |x| would go with the step's length, down to rounding.
+inline void add_wall(double x, WidthFactor<double>& barrier) {
+  const double gap = (1 - x) * (1 + x);
+  if (!(gap < kWall)) return;
+  const double excess = kWall / gap - 1, slope = 2 * x * kWall / (gap * gap);
+  barrier.value += excess * excess * excess;
+  barrier.first += 3 * excess * excess * slope;
+  barrier.second +=
+      6 * excess * slope * slope + 3 * excess * excess * (2 + 8 * x * x / gap) * kWall / (gap * gap);
+}
+
 }  // namespace detail
 
-/// -ln(1 - x^2): keeps rulings from meeting inside the strip; infinite from |x| = 1 on.   @eq Shen2015:13
+/// -ln(1 - x^2), and a wall where |x| > 0.9995: keeps rulings from meeting inside the strip; infinite from |x| = 1 on.
+/// @eq Shen2015:13
 inline WidthFactor<double> ruling_barrier(double x) {
-  return x * x < 1 ? detail::finite_barrier(x) : detail::infinite(x);
+  if (!(x * x < 1)) return detail::infinite(x);
+  WidthFactor<double> barrier = detail::finite_barrier(x);
+  detail::add_wall(x, barrier);
+  return barrier;
 }
 inline WidthFactor<math::Four> ruling_barrier(math::Four x) {
-  if (math::all_below(x * x, 1)) return detail::finite_barrier(x);
+  if (math::all_below(x * x, 1 - detail::kWall)) return detail::finite_barrier(x);
   return detail::by_lane([](double lane) { return ruling_barrier(lane); }, x);
 }
 

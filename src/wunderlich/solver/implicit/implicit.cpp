@@ -26,6 +26,7 @@ constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
 constexpr int kCalmSteps = 50;         // before less damping is tried again
 constexpr int kInelastic = kDampingLevels;  // beyond those: Euler's
 constexpr int kShortened = 2;               // halvings of a step that may be inelastic
+constexpr int kPatient = 4;                 // halvings from which on more iterations are worth their time
 constexpr double kProbe = 0.02;             // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
 
@@ -48,10 +49,10 @@ Scheme scheme_of(const Options& options, const State& state, double h) {
   return make_scheme(options.integrator, kRho[static_cast<std::size_t>(state.level)], h, state.last_step);
 }
 
-NewtonOptions newton_options(const Options& options) {
+NewtonOptions newton_options(const Options& options, int halvings) {
   NewtonOptions newton;
   newton.tolerance = options.tolerance;
-  newton.max_iterations = options.max_iterations;
+  newton.max_iterations = halvings < kPatient ? options.max_iterations : 4 * options.max_iterations;
   return newton;
 }
 
@@ -217,7 +218,7 @@ void find_accelerations(Paths paths, const Options& options, State& state, Works
     strip.points.acceleration = strip.points.a;
     work.strips[i].multipliers.assign(row_count(work.strips[i].problem), 0.0);
   }
-  NewtonOptions newton = newton_options(options);
+  NewtonOptions newton = newton_options(options, 0);
   newton.tolerance = 1e-10;
   const NewtonReport report = minimise(moving(paths, work), work.self, newton, work.newton);
   if (!report.converged()) return;  // from rest, then
@@ -323,7 +324,7 @@ StepReport step(Paths paths, const Options& options, double t1, int halvings, St
     if (!start_clear(paths, state, h, work)) {
       return fail("something runs into the strip within a step of " + std::to_string(h) + " s");
     }
-    report.newton = minimise(moving(paths, work), work.self, newton_options(options), work.newton);
+    report.newton = minimise(moving(paths, work), work.self, newton_options(options, halvings), work.newton);
     report.iterations += report.newton.iterations;
     if (!report.newton.converged()) return fail(why(report.newton, t1, h));
     const End end = finish_strips(paths, options, scheme, state, work);

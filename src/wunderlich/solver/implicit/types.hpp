@@ -15,7 +15,7 @@ struct Options {
   Integrator integrator = Integrator::generalised_alpha;
   KineticEnergy kinetic = KineticEnergy::rotary;
   double tolerance = 1e-6;  ///< on Newton's last step (which is taken): rotation [rad], displacement / length
-  int max_iterations = 40;  ///< of one minimisation
+  int max_iterations = 40;  ///< of one minimisation; four times as many once a step is short
   double barrier = 1e-3;    ///< e1 of the ruling barrier: rulings have no mass, and in a flat strip no stiffness
   double drag_tangent = 0;  ///< rate [1/s] at which the velocity along the tangent decays, as in air
   double drag_normal = 0;   ///< the same across it
