@@ -122,8 +122,9 @@ TEST(WidthFactor, BarrierEndsInAWall) {
 /// Four arguments at once: all in reach of the series, none, some, and one where the energy is infinite.
 TEST(WidthFactor, OfFourIsThatOfEach) {
   const auto check = [](const auto& factor) {
-    for (const math::Four& x : {math::Four{1e-9, 0.03, -0.19, 0.0}, math::Four{0.3, -0.5, 0.9, -0.99},
-                                math::Four{0.1, -0.7, 0.1999, 0.2001}, math::Four{0.1, 1.0, -1.5, 0.6}, math::Four{0.1, 0.9999, -0.3, -0.999}}) {
+    for (const math::Four& x :
+         {math::Four{1e-9, 0.03, -0.19, 0.0}, math::Four{0.3, -0.5, 0.9, -0.99}, math::Four{0.1, -0.7, 0.1999, 0.2001},
+          math::Four{0.1, 1.0, -1.5, 0.6}, math::Four{0.1, 0.9999, -0.3, -0.999}}) {
       const energy::WidthFactor<math::Four> four = factor(x);
       for (int lane = 0; lane < 4; ++lane) {
         SCOPED_TRACE(x[lane]);

@@ -105,16 +105,15 @@ inline WidthFactor<Real> finite_barrier(Real x) {
 
 constexpr double kWall = 1e-3;  // 1 - x^2 where the barrier turns into a wall
 
-/// The cube of what kWall/(1 - x^2) exceeds 1 by. In motions the bound takes up impulses, the larger a force the shorter
-/// the step: against a logarithm alone 1 - |x| would go with the step's length, down to rounding.
+/// The cube of what kWall/(1 - x^2) exceeds 1 by. In motions the bound takes up impulses, the larger a force the
+/// shorter the step: against a logarithm alone 1 - |x| would go with the step's length, down to rounding.
 inline void add_wall(double x, WidthFactor<double>& barrier) {
   const double gap = (1 - x) * (1 + x);
   if (!(gap < kWall)) return;
   const double excess = kWall / gap - 1, slope = 2 * x * kWall / (gap * gap);
   barrier.value += excess * excess * excess;
   barrier.first += 3 * excess * excess * slope;
-  barrier.second +=
-      6 * excess * slope * slope + 3 * excess * excess * (2 + 8 * x * x / gap) * kWall / (gap * gap);
+  barrier.second += 6 * excess * slope * slope + 3 * excess * excess * (2 + 8 * x * x / gap) * kWall / (gap * gap);
 }
 
 }  // namespace detail

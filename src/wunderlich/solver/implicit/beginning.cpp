@@ -137,17 +137,24 @@ bool start_clear(Paths paths, const State& state, double h, Workspace& work) {
     keep_held(own.problem, held[i], own.trial.base);
   }
   if (is_clear()) return true;
-  for (std::size_t k = 0; k < work.strips.front().solids.solids.size(); ++k) {
+  // Carried along by one of the solids?
+  const auto goes_with = [&](const Pose& from, const Pose& to) {
+    const Quat turn = to.frame * from.frame.conjugate();
     for (std::size_t i = 0; i < paths.size(); ++i) {
       StripWorkspace& own = work.strips[i];
-      const Pose &from = own.solids.solids[k].pose, &to = own.problem.contact.solids[k].pose;
-      const Quat turn = to.frame * from.frame.conjugate();
       const Pose& base = state.strips[i].path.chain.base;
       own.trial.base.position = to.position + turn * (base.position - from.position);
       own.trial.base.frame = turn * base.frame;
       keep_held(own.problem, held[i], own.trial.base);
     }
-    if (is_clear()) return true;
+    return is_clear();
+  };
+  const ContactProblem &before = work.strips.front().solids, &after = work.strips.front().problem.contact;
+  for (std::size_t k = 0; k < before.solids.size(); ++k) {
+    if (goes_with(before.solids[k].pose, after.solids[k].pose)) return true;
+  }
+  for (std::size_t k = 0; k < before.meshes.solids.size(); ++k) {
+    if (goes_with(before.meshes.solids[k].pose, after.meshes.solids[k].pose)) return true;
   }
   return false;
 }
