@@ -1,5 +1,6 @@
 // What contact costs: steps of a strip that drapes itself over a cylinder beside the same strip in free fall, and the
-// detection of contact beside the linear solve as n grows, where every facet touches. Counters in seconds.
+// detection of contact, with solids and of a strip with itself, beside the linear solve as n grows, where every facet
+// touches. Counters in seconds.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -125,10 +126,81 @@ void Solve(benchmark::State& state) {
   state.counters["s_per_segment"] = seconds_each(static_cast<double>(state.range(1)));
 }
 
+/// A strip rolled up, its layers four fifths of the barrier's distance apart, so that each of its facets touches two
+/// others.
+struct Rolled {
+  geometry::Ribbon ribbon;
+  geometry::Chain chain;
+  solver::ChainProblem problem;
+  solver::NewtonWorkspace work;
+  solver::SelfContact self;
+  solver::SelfSearch search;
+  solver::SelfContacts contacts, trial;
+  std::vector<solver::StripPlace> places;
+  std::vector<math::ChainCoupling> between;
+
+  explicit Rolled(int segments) : ribbon(geometry::make_ribbon(spec_of(segments))) {
+    constraint::Surroundings surroundings;
+    surroundings.contact.self = true;
+    surroundings.contact.distance = kDistance;
+    chain = geometry::straight_chain(ribbon, {});
+    const double pitch = 0.8 * kDistance;
+    double s = 0;
+    for (std::size_t i = 1; i < ribbon.rest_length.size(); ++i) {
+      s += ribbon.rest_length[i - 1];
+      chain.kappa[i] = 1 / std::sqrt(kRadius * kRadius + pitch * s / EIGEN_PI);
+    }
+    const auto nodes = static_cast<std::size_t>(ribbon.node_count());
+    problem.force.assign(nodes, Vec3::Zero());
+    problem.tie.assign(nodes, 10);
+    geometry::forward_kinematics(ribbon, chain, work.kinematics);
+    problem.anchor = work.kinematics.r;
+    solver::place_self(ribbon, surroundings, kDistance, true, chain.eta, self);
+    places.push_back({ribbon, chain, work.kinematics});
+    solver::find_pairs(places, self, search, contacts);
+    if (contacts.pairs.size() < nodes && segments > 200) std::abort();
+    trial = contacts;
+  }
+  static geometry::RibbonSpec spec_of(int segments) {
+    geometry::RibbonSpec spec = strip(segments);
+    spec.length = 0.004 * segments;
+    return spec;
+  }
+};
+
+void SelfDetection(benchmark::State& state) {
+  Rolled roll(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solver::travel(roll.places, roll.self, roll.contacts, roll.search, roll.trial));
+  }
+  state.counters["s_per_segment"] = seconds_each(static_cast<double>(state.range(0)));
+  state.counters["pairs_per_segment"] =
+      static_cast<double>(roll.contacts.pairs.size()) / static_cast<double>(state.range(0));
+}
+
+/// Derivatives, with those of contact, and the sparse factorisation.
+void SelfSolve(benchmark::State& state) {
+  Rolled roll(static_cast<int>(state.range(0)));
+  const std::vector<double> multipliers;
+  solver::NewtonWorkspace& work = roll.work;
+  math::ChainSystem* const systems[] = {&work.system};
+  const math::ChainPart parts[] = {{&work.system, &work.sweep, &work.step}};
+  for (auto _ : state) {
+    roll.between.clear();
+    solver::linearise(roll.ribbon, roll.problem, roll.chain, work.kinematics, multipliers, work.touching, work.system);
+    solver::add_self_contact(roll.places, roll.self, roll.contacts, systems, roll.between);
+    if (!math::chain_steps(parts, roll.between)) std::abort();
+  }
+  state.counters["s_per_segment"] = seconds_each(static_cast<double>(state.range(0)));
+}
+
 // Arguments: 0 in free fall, 1 with the cylinder; the step in microseconds.
 BENCHMARK(StepDrape)->ArgsProduct({{0, 1}, {1000, 2000, 5000}})->Unit(benchmark::kMillisecond);
 // Arguments: 0 on a plane, 1 along a cylinder; segments.
 BENCHMARK(Detection)->ArgsProduct({{0, 1}, {50, 100, 400, 1600, 6400}})->Unit(benchmark::kMicrosecond);
 BENCHMARK(Solve)->ArgsProduct({{0, 1}, {50, 100, 400, 1600, 6400}})->Unit(benchmark::kMicrosecond);
+// Argument: segments.
+BENCHMARK(SelfDetection)->Arg(400)->Arg(1600)->Arg(6400)->Unit(benchmark::kMicrosecond);
+BENCHMARK(SelfSolve)->Arg(400)->Arg(1600)->Arg(6400)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -104,19 +104,20 @@ TEST(WidthFactor, DerivativesOfEveryKind) {
 // The wall begins without a jump in what is used of it, and keeps what it keeps off well above rounding.
 TEST(WidthFactor, BarrierEndsInAWall) {
   const double edge = std::sqrt(1 - 1e-3);
-  const WidthFactor before = energy::ruling_barrier(edge - 1e-12), after = energy::ruling_barrier(edge + 1e-12);
+  const auto walled = [](double x) { return energy::ruling_barrier(x, 1e-3); };
+  const WidthFactor before = walled(edge - 1e-12), after = walled(edge + 1e-12);
   EXPECT_NEAR(after.value / before.value, 1, 1e-8);
   EXPECT_NEAR(after.first / before.first, 1, 1e-6);
   EXPECT_NEAR(after.second / before.second, 1, 1e-4);
   for (const double x : {0.9996, -0.9999, 0.99999}) {
     SCOPED_TRACE(x);
     const double h = 1e-4 * (1 - std::abs(x));
-    const auto value = [](double at) { return energy::ruling_barrier(at).value; };
-    const auto first = [](double at) { return energy::ruling_barrier(at).first; };
+    const auto value = [&](double at) { return walled(at).value; };
+    const auto first = [&](double at) { return walled(at).first; };
     EXPECT_NEAR((value(x + h) - value(x - h)) / (2 * h) / first(x), 1, 1e-6);
-    EXPECT_NEAR((first(x + h) - first(x - h)) / (2 * h) / energy::ruling_barrier(x).second, 1, 1e-6);
+    EXPECT_NEAR((first(x + h) - first(x - h)) / (2 * h) / walled(x).second, 1, 1e-6);
   }
-  EXPECT_GT(energy::ruling_barrier(1 - 1e-7).first, 1e18);  // a logarithm's is 1e7
+  EXPECT_GT(walled(1 - 1e-7).first, 1e18);  // a logarithm's is 1e7
 }
 
 /// Four arguments at once: all in reach of the series, none, some, and one where the energy is infinite.
@@ -139,6 +140,7 @@ TEST(WidthFactor, OfFourIsThatOfEach) {
     check([&](auto x) { return energy::width_factor(Model{elastic, 5, {}}, x); });
   }
   check([](auto x) { return energy::ruling_barrier(x); });
+  check([](auto x) { return energy::ruling_barrier(x, 1e-3); });
 }
 
 // @eq Shen2015:13

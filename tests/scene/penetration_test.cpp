@@ -102,6 +102,8 @@ TEST(Penetration, NoneInBelt) { expect_clear("belt", 0.3, 0); }
 TEST(Penetration, NoneInPile) { expect_clear("pile", 0.3, 0); }
 TEST(Penetration, NoneInPaperChain) { expect_clear("paper-chain", 0.16, 0); }
 TEST(Penetration, NoneInLoop) { expect_clear("loop-2pi", 0, 0); }
+TEST(Penetration, NoneInKnot) { expect_clear("knot", 0.5, 0); }
+TEST(Penetration, NoneInCoil) { expect_clear("coil", 0, 0); }
 
 /// A hundredth of the width is what the two-stage method may.
 TEST(Penetration, BelowAHundredthInSlideCylinder) {

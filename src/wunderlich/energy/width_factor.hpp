@@ -103,32 +103,30 @@ inline WidthFactor<Real> finite_barrier(Real x) {
   return {log_barrier(x), 2 * x * inverse, 2 * (1 + x * x) * inverse * inverse};
 }
 
-constexpr double kWall = 1e-3;  // 1 - x^2 where the barrier turns into a wall
-
-/// The cube of what kWall/(1 - x^2) exceeds 1 by. In motions the bound takes up impulses, the larger a force the
-/// shorter the step: against a logarithm alone 1 - |x| would go with the step's length, down to rounding.
-inline void add_wall(double x, WidthFactor<double>& barrier) {
+/// Adds (wall/(1 - x^2) - 1)^3 where that is positive.
+inline void add_wall(double x, double wall, WidthFactor<double>& barrier) {
   const double gap = (1 - x) * (1 + x);
-  if (!(gap < kWall)) return;
-  const double excess = kWall / gap - 1, slope = 2 * x * kWall / (gap * gap);
+  if (!(gap < wall)) return;
+  const double excess = wall / gap - 1, slope = 2 * x * wall / (gap * gap);
   barrier.value += excess * excess * excess;
   barrier.first += 3 * excess * excess * slope;
-  barrier.second += 6 * excess * slope * slope + 3 * excess * excess * (2 + 8 * x * x / gap) * kWall / (gap * gap);
+  barrier.second += 6 * excess * slope * slope + 3 * excess * excess * (2 + 8 * x * x / gap) * wall / (gap * gap);
 }
 
 }  // namespace detail
 
-/// -ln(1 - x^2), and a wall where |x| > 0.9995: keeps rulings from meeting inside the strip; infinite from |x| = 1 on.
-/// @eq Shen2015:13
-inline WidthFactor<double> ruling_barrier(double x) {
+/// -ln(1 - x^2): keeps rulings from meeting inside the strip; infinite from |x| = 1 on.   @eq Shen2015:13
+/// Where 1 - x^2 < `wall` it turns into a wall. In motions the bound takes up impulses, a force the larger the shorter
+/// the step: against the logarithm alone 1 - |x| would fall with the step's length, down to rounding.
+inline WidthFactor<double> ruling_barrier(double x, double wall = 0) {
   if (!(x * x < 1)) return detail::infinite(x);
   WidthFactor<double> barrier = detail::finite_barrier(x);
-  detail::add_wall(x, barrier);
+  detail::add_wall(x, wall, barrier);
   return barrier;
 }
-inline WidthFactor<math::Four> ruling_barrier(math::Four x) {
-  if (math::all_below(x * x, 1 - detail::kWall)) return detail::finite_barrier(x);
-  return detail::by_lane([](double lane) { return ruling_barrier(lane); }, x);
+inline WidthFactor<math::Four> ruling_barrier(math::Four x, double wall = 0) {
+  if (math::all_below(x * x, 1 - wall)) return detail::finite_barrier(x);
+  return detail::by_lane([wall](double lane) { return ruling_barrier(lane, wall); }, x);
 }
 
 }  // namespace wunderlich::energy

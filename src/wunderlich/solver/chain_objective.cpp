@@ -96,7 +96,7 @@ void fill_node(const ChainProblem& problem, std::size_t i, ChainLink& link) {
 inline void fill_links(const Ribbon& ribbon, const ChainProblem& problem, const Chain& chain, const Kinematics& k,
                        std::size_t first, std::size_t count, ChainLink* links) {
   const FourLinks four = four_links(ribbon, problem, chain, k, first);
-  const energy::WidthFactor<Four> wall = energy::ruling_barrier(four.x);
+  const energy::WidthFactor<Four> wall = energy::ruling_barrier(four.x, problem.wall);
   // Nothing asks for values here, and a logarithm is dear.
   const energy::WidthFactor<Four> barrier{math::all(0), four.barrier_weight * wall.first,
                                           four.barrier_weight * wall.second};
@@ -188,7 +188,7 @@ ObjectiveValue objective(const Ribbon& ribbon, const ChainProblem& problem, cons
     const FourLinks four = four_links(ribbon, problem, chain, k, first);
     const Four elastic = energy::link_bending(four.rule, four.weight, four.a, four.b) *
                          energy::width_factor(problem.model, four.x).value;
-    const Four barrier = four.barrier_weight * energy::ruling_barrier(four.x).value;
+    const Four barrier = four.barrier_weight * energy::ruling_barrier(four.x, problem.wall).value;
     for (std::size_t j = 0; j < std::min<std::size_t>(4, n - first); ++j) {
       value.elastic += elastic[static_cast<int>(j)];
       value.barrier += barrier[static_cast<int>(j)];

@@ -43,6 +43,7 @@ struct FacetTie {
 struct ChainProblem {
   energy::Model model;
   double barrier = 1e-6;                    ///< e1: e1 D sum over segments of (l_s/w) (-ln(1 - x^2))
+  double wall = 0;                          ///< 1 - x^2 from which on the barrier is a wall; 0: nowhere
   std::vector<Vec3> force;                  ///< (segments + 1) dead force on each node [N]
   std::vector<PointLoad> loads;             ///< sorted by decreasing node
   std::vector<double> tie;                  ///< (segments + 1) or none: (tie/2) |r - anchor|^2 of each node [N/m]

@@ -28,10 +28,10 @@ struct Iterate {
 };
 
 /// Solves with the smallest shift of the series that leaves no negative mode; false if none does.
-bool find_direction(const Ribbon& ribbon, bool conservative, NewtonWorkspace& work, NewtonReport& report,
-                    double& shift) {
+bool find_direction(const Ribbon& ribbon, bool conservative, double largest, NewtonWorkspace& work,
+                    NewtonReport& report, double& shift) {
   shift = shift <= kSmallestShift ? 0 : shift / kShiftFactor;
-  while (shift < kLargestShift) {
+  while (shift < largest) {
     set_shift(ribbon, shift, work.system);
     ++report.sweeps;
     const bool solved = math::chain_step(work.system, work.sweep, work.step);
@@ -202,7 +202,7 @@ NewtonReport minimise(const Ribbon& ribbon, const ChainProblem& problem, const N
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
     linearise(ribbon, problem, current, work.kinematics, lambda, work.touching, work.system);
-    if (!find_direction(ribbon, conservative, work, report, shift)) {
+    if (!find_direction(ribbon, conservative, options.largest_shift, work, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;
     }

@@ -10,7 +10,8 @@ namespace wunderlich::solver {
 struct NewtonOptions {
   double tolerance = 1e-10;  ///< on the step: fold angles [rad], displacements / length
   int max_iterations = 300;
-  double max_turn = 0.6;  ///< largest change of a fold angle in one iteration [rad]
+  double max_turn = 0.6;       ///< largest change of a fold angle in one iteration [rad]
+  double largest_shift = 1e6;  ///< of the pivots, over those of bending alone: what needs more counts as singular
 };
 
 enum class NewtonOutcome {

@@ -5,7 +5,7 @@
 
 namespace wunderlich::solver {
 
-constexpr double kSmallestShift = 1e-9, kLargestShift = 1e12, kShiftFactor = 5;
+constexpr double kSmallestShift = 1e-9, kShiftFactor = 5;
 
 /// Objective + new multipliers * rows + emphasis penalty/2 * rows^2: the Newton step is a descent direction of it.
 double merit_of(const NewtonWorkspace& work, const ObjectiveValue& value, const std::vector<double>& residuals,

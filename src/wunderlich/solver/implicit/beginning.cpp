@@ -61,7 +61,7 @@ void set_problems(Paths paths, const Options& options, const Scheme& scheme, dou
     const StripState& strip = state.strips[i];
     ChainProblem& problem = work.strips[i].problem;
     problem_at(paths[i], strip.path, t1, work.strips[i].trial, problem);
-    problem.barrier = options.barrier;
+    problem.barrier = problem.wall = options.barrier;
     if (paths[i].surroundings.supports.empty()) problem.base_fixed.fill(false);
     tie(paths[i].ribbon, options.kinetic, scheme, strip.points, strip.path.chain.eta, problem);
     problem.viscosity = options.viscosity / scheme.h;

@@ -26,8 +26,8 @@ constexpr double kLeastGrowth = 1e-9;  // the same over D w / l
 constexpr int kCalmSteps = 50;         // before less damping is tried again
 constexpr int kInelastic = kDampingLevels;  // beyond those: Euler's
 constexpr int kShortened = 2;               // halvings of a step that may be inelastic
-constexpr int kPatient = 4;                 // halvings from which on more iterations are worth their time
-constexpr double kProbe = 0.02;             // of the strip's own time: the step that finds accelerations
+constexpr int kPatient = 4;          // halvings from which on a minimisation is worth more iterations and shorter ways
+constexpr double kProbe = 0.02;      // of the strip's own time: the step that finds accelerations
 constexpr double kProbeShare = 0.1;  // of the last step, and of the time that gravity takes for a segment: at most
 
 /// Time in which a wave of bending crosses the strip.
@@ -52,7 +52,10 @@ Scheme scheme_of(const Options& options, const State& state, double h) {
 NewtonOptions newton_options(const Options& options, int halvings) {
   NewtonOptions newton;
   newton.tolerance = options.tolerance;
-  newton.max_iterations = halvings < kPatient ? options.max_iterations : 4 * options.max_iterations;
+  newton.max_iterations = options.max_iterations;
+  if (halvings < kPatient) return newton;
+  newton.max_iterations *= 4;
+  newton.largest_shift *= 1e6;
   return newton;
 }
 

@@ -143,7 +143,7 @@ bool solve(const Iterate& at, double shift, bool geometric, bool any_modes, Newt
 
 /// Without a shift, if need be without the terms that carry forces; or with the smallest shift of the series that
 /// leaves no negative mode.
-bool find_direction(const Iterate& at, NewtonReport& report, double& shift) {
+bool find_direction(const Iterate& at, double largest, NewtonReport& report, double& shift) {
   for (const bool geometric : {true, false}) {
     if (solve(at, 0, geometric, false, report)) {
       shift = 0;
@@ -152,7 +152,7 @@ bool find_direction(const Iterate& at, NewtonReport& report, double& shift) {
   }
   shift = shift <= kSmallestShift ? 0 : shift / kShiftFactor;
   if (shift == 0 && at.conservative) shift = 100 * kSmallestShift;
-  for (; shift < kLargestShift; shift = shift == 0 ? 100 * kSmallestShift : kShiftFactor * shift) {
+  for (; shift < largest; shift = shift == 0 ? 100 * kSmallestShift : kShiftFactor * shift) {
     if (solve(at, shift, false, !at.conservative, report)) return true;
   }
   return false;
@@ -299,7 +299,7 @@ NewtonReport minimise(Strips strips, const SelfContact& self, const NewtonOption
     ++report.iterations;
     const bool settled = !at.rubs || is_settled(report);
     linearise_all(at, settled);
-    if (!find_direction(at, report, shift)) {
+    if (!find_direction(at, options.largest_shift, report, shift)) {
       report.outcome = NewtonOutcome::singular;
       return report;
     }
