@@ -204,6 +204,11 @@ TEST(MeshContact, LetsNothingThrough) {
   EXPECT_TRUE(thin.may_go({-0.33, 0.05, 1}, {-0.33, 0.05, 0.03}));
   EXPECT_FALSE(thin.may_go({-0.33, 0.05, 0.03}, {-0.33, 0.05, 0.0101}));  // too much of a gap
   EXPECT_TRUE(thin.may_go({-0.33, 0.05, 0.03}, {-0.33, 0.05, 0.02}));
+  const MeshPoints below = thin.points({-0.33, 0.05, -1}), beside = thin.points({-0.33, 0.3, -1});
+  stand({Vec3(0, 0, -2), Quat::Identity()}, thin.problem.solids[0]);  // the solid goes instead
+  EXPECT_FALSE(mesh_may_go(thin.problem, below, thin.points({-0.33, 0.05, -1}), thin.search));
+  EXPECT_TRUE(mesh_may_go(thin.problem, beside, thin.points({-0.33, 0.3, -1}), thin.search));
+  stand({}, thin.problem.solids[0]);
   thin.problem.thickness = 0.03;
   EXPECT_FALSE(thin.may_go({-0.33, 0.18, 1}, {-0.33, 0.18, -1}));  // past its rim, but not past its thickness
 }

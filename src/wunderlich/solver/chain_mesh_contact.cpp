@@ -171,6 +171,7 @@ void find_mesh_pairs(const Ribbon& ribbon, const MeshProblem& problem, const Cha
   const std::size_t n = ribbon.rest_length.size();
   points.facets.resize(problem.solids.size() * n);
   points.placed.assign(problem.solids.size(), 0);
+  points.extents.clear();
   points.pairs.clear();
   points.beyond = kInfinity;
   if (problem.solids.empty()) return;
@@ -178,6 +179,7 @@ void find_mesh_pairs(const Ribbon& ribbon, const MeshProblem& problem, const Cha
   const double far = problem.thickness + problem.distance;
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     const MeshSolid& solid = problem.solids[i];
+    points.extents.push_back(solid.extent);
     const double away = apart(points.strip, solid.extent);
     if (away > far + kNotFar * ribbon.width) {
       points.beyond = std::min(points.beyond, away);

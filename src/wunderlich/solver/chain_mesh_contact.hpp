@@ -34,7 +34,8 @@ struct MeshProblem {
 /// A strip beside all solids of triangles.
 struct MeshPoints {
   contact::Extent strip;                    ///< around all of the strip, in space
-  std::vector<char> placed;                 ///< which solids the strip is not far from; others have no facets
+  std::vector<contact::Extent> extents;     ///< of the solids
+  std::vector<char> placed;                 ///< which of them the strip is not far from; others have no facets
   std::vector<contact::PairPoints> facets;  ///< corners in the solid's own frame: all segments of the first solid, ...
   std::vector<FacetPair> pairs;             ///< nearer than thickness and distance
   double beyond = 0;                        ///< where there are none: what the distance is at least [m]
@@ -58,8 +59,8 @@ void find_mesh_pairs(const geometry::Ribbon& ribbon, const MeshProblem& problem,
 double mesh_energy(const geometry::Ribbon& ribbon, const MeshProblem& problem, const MeshPoints& points);
 
 /// May the facets' corners go from one place to the other in straight lines? Not if a pair would touch on the way, or
-/// lose more than nine tenths of its gap within the barrier's distance, or if one goes from far away into a solid's box
-/// at once. `search` is of use to the next one.
+/// lose more than nine tenths of its gap within the barrier's distance, or if boxes around both go through each other
+/// from far away. `search` is of use to the next one.
 bool mesh_may_go(const MeshProblem& problem, const MeshPoints& from, const MeshPoints& to, PairSearch& search);
 
 /// Smallest distance beyond the thickness [m]; where nothing is near a bound from below, infinite without solids.

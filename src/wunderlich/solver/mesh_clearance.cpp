@@ -19,11 +19,14 @@ bool mesh_may_go(const MeshProblem& problem, const MeshPoints& from, const MeshP
   const std::size_t n = from.facets.size() / problem.solids.size();
   const double least = kLeastShare * problem.distance;  // what is left of a gap that was large
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
-    Extent way = from.strip;
-    way.add(to.strip);
-    way.widen(problem.thickness + least);
-    if (!way.overlaps(problem.solids[i].extent)) continue;
-    if (from.placed[i] == 0 || to.placed[i] == 0) return false;  // a shorter way brings it near enough to be looked at
+    if (from.placed[i] == 0 || to.placed[i] == 0) {
+      Extent way = from.strip, solid = from.extents[i];
+      way.add(to.strip);
+      solid.add(to.extents[i]);
+      way.widen(problem.thickness + least);
+      if (!way.overlaps(solid)) continue;
+      return false;  // a shorter way brings it near enough to be looked at
+    }
     const TriangleMesh& mesh = *problem.solids[i].mesh;
     const PairPoints *const facets0 = from.facets.data() + i * n, *const facets1 = to.facets.data() + i * n;
     const auto swept = [&](Extent box, const Extent& end) {
