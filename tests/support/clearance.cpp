@@ -71,6 +71,12 @@ double bound(const Facet& a, const Facet& b) {
   return (middle(a) - middle(b)).norm() - radius(a) - radius(b);
 }
 
+/// Between the stretches of two facets in the flat pattern; round a loop the shorter way.
+double flat_gap(const geometry::Ribbon& ribbon, const Facet& a, const Facet& b) {
+  const auto gap = [&](double shift) { return std::max(a.low + shift - b.high, b.low - a.high - shift); };
+  return ribbon.is_loop() ? std::min({gap(-ribbon.length), gap(0), gap(ribbon.length)}) : gap(0);
+}
+
 }  // namespace
 
 double clearance(std::span<const solver::StripPlace> strips, double apart) {
@@ -80,7 +86,7 @@ double clearance(std::span<const solver::StripPlace> strips, double apart) {
     for (const solver::StripPlace& other : strips) {
       for (const Facet& facet : facets_of(other)) {
         for (const Facet& from : points) {
-          if (&one == &other && std::max(facet.low - from.high, from.low - facet.high) <= apart) continue;
+          if (&one == &other && flat_gap(one.ribbon, facet, from) <= apart) continue;
           if (bound(from, facet) < least) least = std::min(least, between(from, facet));
         }
       }

@@ -8,7 +8,7 @@
 namespace wunderlich::testing {
 
 /// Smallest distance from points of a grid on each facet to every other facet [m], but for facets of one strip whose
-/// stretches of the flat pattern are no more than `apart` from each other. Open strips.
+/// stretches of the flat pattern are no more than `apart` from each other.
 double clearance(std::span<const solver::StripPlace> strips, double apart);
 
 }  // namespace wunderlich::testing
