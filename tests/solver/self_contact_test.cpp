@@ -167,7 +167,7 @@ TEST(SelfContact, ALoopOfAWholeTurnBecomesAZero) {
     solver::NewtonWorkspace work;
     while (state.phase != solver::Phase::done) {
       const solver::PathStep step = advance(path, state, work);
-      ASSERT_TRUE(step.accepted) << step.failure;
+      ASSERT_TRUE(step.accepted || !step.exhausted) << step.failure;  // the next one is half as long
       ASSERT_EQ(crossings_of(path, state), 0) << phase_name(state.phase) << " " << state.t;
     }
     const double energy = solver::elastic_energy(path.ribbon, options.model, state.chain);
