@@ -19,7 +19,7 @@ LAYERS = {
     "energy": ["base", "math", "geometry"],
     "constraint": ["base", "math", "geometry", "contact"],
     "solver": ["base", "math", "geometry", "energy", "contact", "constraint"],
-    "baseline": ["base", "math", "contact", "constraint", "geometry"],
+    "baseline": ["base", "math", "geometry", "contact", "constraint"],
     "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver", "baseline"],
     "io": ["base"],
 }
