@@ -8,7 +8,7 @@ namespace wunderlich::testing {
 
 std::vector<Rod> sample_rods() {
   std::vector<Rod> rods;
-  rod::Stiffness stiffness{30, 2.0, 3.0, 1.5};
+  const rod::Stiffness stiffness{30, 2.0, 3.0, 1.5};
   for (int half_twists : {-1, 0, 1, 2}) {
     geometry::RibbonSpec spec;
     spec.length = 3;
@@ -19,6 +19,8 @@ std::vector<Rod> sample_rods() {
     if (half_twists >= 0) spec.closure = geometry::Closure::loop;
     spec.half_twists = std::max(0, half_twists);
     rods.push_back(rod::make_rod(spec, stiffness));
+    rods.push_back(rods.back());
+    rods.back().bending = rod::Bending::separate;
   }
   return rods;
 }
@@ -79,12 +81,13 @@ constraint::Surroundings problem_t_surroundings(int nodes) {
   return surroundings;
 }
 
-PathEnd along_path(const Rod& sample, const constraint::Surroundings& surroundings, rod::State start, int steps) {
+PathEnd along_path(const Rod& sample, const constraint::Surroundings& surroundings, rod::State start, int steps,
+                   const rod::Options& options) {
   PathEnd end;
   end.state = std::move(start);
   rod::Workspace work;
   for (int k = 1; k <= steps; ++k) {
-    end.last = rod::equilibrium(sample, surroundings, static_cast<double>(k) / steps, {}, end.state, work);
+    end.last = rod::equilibrium(sample, surroundings, static_cast<double>(k) / steps, options, end.state, work);
     end.iterations += end.last.iterations;
     if (!end.last.converged()) return end;
   }

@@ -40,6 +40,7 @@ struct PathEnd {
   double energy = 0;  ///< elastic [J]
 };
 /// Equilibria in equal load steps from `start`, supports at rest there; stops at the first that does not converge.
-PathEnd along_path(const Rod& sample, const constraint::Surroundings& surroundings, rod::State start, int steps);
+PathEnd along_path(const Rod& sample, const constraint::Surroundings& surroundings, rod::State start, int steps,
+                   const rod::Options& options = {});
 
 }  // namespace wunderlich::testing

@@ -1,6 +1,7 @@
 #include "wunderlich/baseline/rod/energy.hpp"
 
 #include <cmath>
+#include <span>
 
 #include "wunderlich/math/rotation.hpp"
 
@@ -33,6 +34,16 @@ Bend bend_at(const Rod& rod, const State& state, std::size_t node) {
   b.scale = b.e_len * b.f_len + b.e.dot(b.f);
   b.twist = state.theta[edges.after] + edges.turn - state.theta[edges.before] + state.reference_twist[node];
   return b;
+}
+
+/// What curvature is measured in: the sections' directions times these.
+struct Reading {
+  double before, after;
+  double weight;  ///< of its energy
+};
+std::span<const Reading> readings(Bending bending) {
+  static constexpr Reading kAveraged[] = {{1, 1, 1}}, kSeparate[] = {{2, 0, 0.5}, {0, 2, 0.5}};
+  return bending == Bending::averaged ? std::span<const Reading>(kAveraged) : std::span<const Reading>(kSeparate);
 }
 
 /// Half the curvature binormal along `d`: q = d.(e x f)/scale.
@@ -71,15 +82,10 @@ using Mat8 = Eigen::Matrix<double, 8, 8>;
 /// A symmetric matrix a b^T + b a^T.
 Mat3 both(const Vec3& a, const Vec3& b) { return a * b.transpose() + b * a.transpose(); }
 
-/// Derivatives of a node's strains by (e, theta before, f, theta after).
-struct StrainSlopes {
-  Vec8 soft, hard, twist;
-};
-
-/// Adds moment times second derivative of the two curvatures.
-void add_bending(const Bend& b, const Vec3& cross, double soft_moment, double hard_moment, Mat8& h) {
-  const Vec3 de = soft_moment * b.before.m2 - hard_moment * b.before.m1;
-  const Vec3 df = soft_moment * b.after.m2 - hard_moment * b.after.m1;
+/// Adds moment times second derivative of the two curvatures of a reading.
+void add_curving(const Bend& b, const Vec3& cross, const Reading& r, double soft_moment, double hard_moment, Mat8& h) {
+  const Vec3 de = r.before * (soft_moment * b.before.m2 - hard_moment * b.before.m1);
+  const Vec3 df = r.after * (soft_moment * b.after.m2 - hard_moment * b.after.m1);
   const double q = half_bend(b, cross, de + df);
   const Curvatures c = curvatures(b, de + df, q, slopes(b, de + df, q));
   // Carrying a section to a turned edge moves it along the edge only, which the binormal feels to second order.
@@ -88,8 +94,9 @@ void add_bending(const Bend& b, const Vec3& cross, double soft_moment, double ha
   h.block<3, 3>(4, 4) += c.ff + both(quarter_binormal, df) / (b.f_len * b.f_len);
   h.block<3, 3>(0, 4) += c.ef;
   h.block<3, 3>(4, 0) += c.ef.transpose();
-  const Vec3 turned_e = -soft_moment * b.before.m1 - hard_moment * b.before.m2;  // derivative of de by theta
-  const Vec3 turned_f = -soft_moment * b.after.m1 - hard_moment * b.after.m2;
+  // Derivatives of these by theta.
+  const Vec3 turned_e = r.before * (-soft_moment * b.before.m1 - hard_moment * b.before.m2);
+  const Vec3 turned_f = r.after * (-soft_moment * b.after.m1 - hard_moment * b.after.m2);
   for (const auto& [row, turned, self] : {std::tuple(3, turned_e, de), std::tuple(7, turned_f, df)}) {
     const Slopes s = slopes(b, turned, half_bend(b, cross, turned));
     h.block<3, 1>(0, row) += s.e;
@@ -100,27 +107,34 @@ void add_bending(const Bend& b, const Vec3& cross, double soft_moment, double ha
   }
 }
 
-/// Adds moment times second derivative of the twist.   @eq Bergou2010
-void add_twisting(const Bend& b, const Vec3& cross, double moment, Mat8& h) {
+/// Energy of bending by one reading, its derivatives by (e, theta before, f, theta after) added.
+void add_bending(const Bend& b, const Vec3& cross, const Reading& r, double soft, double hard, Vec8& g, Mat8& h) {
+  const Vec3 m1 = -(r.before * b.before.m1 + r.after * b.after.m1), m2 = r.before * b.before.m2 + r.after * b.after.m2;
+  const double q1 = half_bend(b, cross, m1), q2 = half_bend(b, cross, m2);
+  const Slopes by_edges_1 = slopes(b, m1, q1), by_edges_2 = slopes(b, m2, q2);
+  const auto q = [&](const Vec3& d) { return half_bend(b, cross, d); };
+  Vec8 slope1, slope2;
+  slope1 << by_edges_1.e, -r.before * q(b.before.m2), by_edges_1.f, -r.after * q(b.after.m2);
+  slope2 << by_edges_2.e, -r.before * q(b.before.m1), by_edges_2.f, -r.after * q(b.after.m1);
+  g += (soft * q2) * slope2 + (hard * q1) * slope1;
+  h += (soft * slope2) * slope2.transpose() + (hard * slope1) * slope1.transpose();
+  add_curving(b, cross, r, soft * q2, hard * q1, h);
+}
+
+/// The same of twisting.   @eq Bergou2010
+void add_twisting(const Bend& b, const Vec3& cross, double twist, Vec8& g, Mat8& h) {
   const Vec3 &t = b.before.m3, &u = b.after.m3;
+  const double moment = twist * b.twist;
+  Vec8 slope;
+  slope << cross / (b.scale * b.e_len), -1, cross / (b.scale * b.f_len), 1;
+  g += moment * slope;
+  h += (twist * slope) * slope.transpose();
   const Vec3 binormal = 2 / b.scale * cross, tilde = (t + u) / (1 + t.dot(u));
   h.block<3, 3>(0, 0) -= moment / (4 * b.e_len * b.e_len) * both(binormal, t + tilde);
   h.block<3, 3>(4, 4) -= moment / (4 * b.f_len * b.f_len) * both(binormal, u + tilde);
   const Mat3 mixed = moment / (2 * b.e_len * b.f_len) * (2 / (1 + t.dot(u)) * math::skew(t) - binormal * tilde.transpose());
   h.block<3, 3>(0, 4) += mixed;
   h.block<3, 3>(4, 0) += mixed.transpose();
-}
-
-StrainSlopes strain_slopes(const Bend& b, const Vec3& cross) {
-  StrainSlopes out;
-  const Vec3 m1 = b.before.m1 + b.after.m1, m2 = b.before.m2 + b.after.m2;
-  const Slopes soft = slopes(b, m2, half_bend(b, cross, m2)), hard = slopes(b, -m1, half_bend(b, cross, -m1));
-  const auto q = [&](const Vec3& d) { return half_bend(b, cross, d); };
-  out.soft << soft.e, -q(b.before.m1), soft.f, -q(b.after.m1);
-  out.hard << hard.e, -q(b.before.m2), hard.f, -q(b.after.m2);
-  const Vec3 half_binormal = cross / b.scale;
-  out.twist << half_binormal / b.e_len, -1, half_binormal / b.f_len, 1;
-  return out;
 }
 
 /// From edge vectors to nodes: e = x1 - x0, f = x2 - x1.
@@ -152,11 +166,16 @@ Energy elastic_energy(const Rod& rod, const State& state) {
   }
   for (std::size_t i = 0; i < rod.nodes(); ++i) {
     if (rod.hinge_length[i] == 0) continue;
-    const Strain s = strain(rod, state, i);
-    const double half = 0.5 * rod.hinge_length[i];
-    energy.soft += half * rod.stiffness.soft * s.soft * s.soft;
-    energy.hard += half * rod.stiffness.hard * s.hard * s.hard;
-    energy.twist += half * rod.stiffness.twist * s.twist * s.twist;
+    const Bend b = bend_at(rod, state, i);
+    const Vec3 cross = b.e.cross(b.f);
+    const double half = 0.5 / rod.hinge_length[i];
+    for (const Reading& r : readings(rod.bending)) {
+      const double soft = half_bend(b, cross, r.before * b.before.m2 + r.after * b.after.m2);
+      const double hard = half_bend(b, cross, r.before * b.before.m1 + r.after * b.after.m1);
+      energy.soft += half * r.weight * rod.stiffness.soft * soft * soft;
+      energy.hard += half * r.weight * rod.stiffness.hard * hard * hard;
+    }
+    energy.twist += half * rod.stiffness.twist * b.twist * b.twist;
   }
   return energy;
 }
@@ -164,17 +183,14 @@ Energy elastic_energy(const Rod& rod, const State& state) {
 HingeTerms hinge_terms(const Rod& rod, const State& state, std::size_t node) {
   const Bend b = bend_at(rod, state, node);
   const Vec3 cross = b.e.cross(b.f);
-  const StrainSlopes d = strain_slopes(b, cross);
   const double over = 1 / rod.hinge_length[node];
-  const double soft = over * rod.stiffness.soft, hard = over * rod.stiffness.hard, twist = over * rod.stiffness.twist;
-  const double soft_moment = soft * half_bend(b, cross, b.before.m2 + b.after.m2);
-  const double hard_moment = -hard * half_bend(b, cross, b.before.m1 + b.after.m1);
-  const double twist_moment = twist * b.twist;
-  const Vec8 gradient = soft_moment * d.soft + hard_moment * d.hard + twist_moment * d.twist;
-  Mat8 hessian = (soft * d.soft) * d.soft.transpose() + (hard * d.hard) * d.hard.transpose() +
-                 (twist * d.twist) * d.twist.transpose();
-  add_bending(b, cross, soft_moment, hard_moment, hessian);
-  add_twisting(b, cross, twist_moment, hessian);
+  Vec8 gradient = Vec8::Zero();
+  Mat8 hessian = Mat8::Zero();
+  for (const Reading& r : readings(rod.bending)) {
+    const double share = r.weight * over;
+    add_bending(b, cross, r, share * rod.stiffness.soft, share * rod.stiffness.hard, gradient, hessian);
+  }
+  add_twisting(b, cross, over * rod.stiffness.twist, gradient, hessian);
   return by_nodes(gradient, hessian);
 }
 

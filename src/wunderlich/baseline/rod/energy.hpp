@@ -10,7 +10,7 @@
 
 namespace wunderlich::baseline::rod {
 
-/// Strains at a node, over its hinge's length.   @eq Bergou2008:2, Bergou2010
+/// Strains at a node, over its hinge's length.   @eq Bergou2008:1, Bergou2010
 struct Strain {
   double soft = 0, hard = 0;  ///< curvature about m2 and m1, averaged over the two sections [1/m]
   double twist = 0;           ///< [rad/m]

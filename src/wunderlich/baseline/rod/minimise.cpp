@@ -96,6 +96,14 @@ void find_metric(const Rod& rod, const Unknowns& u, std::vector<double>& metric)
   }
 }
 
+/// Factors the Hessian with a shift; returns the number of negative modes, at least 1 where it cannot be factored.
+int factor_with(double shift, Workspace& work) {
+  work.factors = work.system.hessian;
+  for (int k = 0; k < work.factors.size; ++k) work.factors.at(k, k) += shift * work.metric[static_cast<std::size_t>(k)];
+  const math::Inertia inertia = math::factor(work.factors);
+  return inertia.sound ? inertia.negative : std::max(1, inertia.negative);
+}
+
 /// Factors the Hessian with the least shift tried that makes it positive; `shift` starts from that of the last time.
 /// False if none does.
 bool factor_shifted(const Rod& rod, Workspace& work, double& shift, Report& report) {
@@ -103,12 +111,10 @@ bool factor_shifted(const Rod& rod, Workspace& work, double& shift, Report& repo
   double next = std::max(0.1 * shift, least);
   shift = 0;
   for (int tries = 0; tries < kMostShifts; ++tries) {
-    work.factors = work.system.hessian;
-    for (int k = 0; k < work.factors.size; ++k) work.factors.at(k, k) += shift * work.metric[static_cast<std::size_t>(k)];
-    const math::Inertia inertia = math::factor(work.factors);
+    const int negative = factor_with(shift, work);
     ++report.factorisations;
-    if (tries == 0) report.negative_modes = inertia.sound ? inertia.negative : 1;
-    if (inertia.sound && inertia.negative == 0) return true;
+    if (tries == 0) report.negative_modes = negative;
+    if (negative == 0) return true;
     shift = next;
     next *= 10;
   }
@@ -155,7 +161,7 @@ double norm(const std::vector<double>& v) {
 
 /// Moves what supports move: with all else going along as the linearised rod would, or staying, whichever has less
 /// energy. False if either way is barred.
-bool follow_supports(const Rod& rod, State& state, Workspace& work, Report& report) {
+bool follow_supports(const Rod& rod, bool predict, State& state, Workspace& work, Report& report) {
   const Objective& objective = work.objective;
   const bool moved = std::any_of(work.unknowns.given.begin(), work.unknowns.given.end(), [](double x) { return x != 0; });
   if (!moved) return true;
@@ -165,8 +171,8 @@ bool follow_supports(const Rod& rod, State& state, Workspace& work, Report& repo
   move(rod, state, work.increment, 1, work.trial);
   const double staying = value(rod, objective, work.trial);
   double going = std::numeric_limits<double>::infinity(), shift = 0;
-  assemble(rod, objective, state, work.unknowns, work.system);
-  if (factor_shifted(rod, work, shift, report)) {
+  if (predict) assemble(rod, objective, state, work.unknowns, work.system);
+  if (predict && factor_shifted(rod, work, shift, report)) {
     for (std::size_t k = 0; k < work.step.size(); ++k) work.step[k] = -work.system.gradient[k];
     math::solve(work.factors, work.step);
     expand(work.unknowns, work.step, 1, work.increment);
@@ -198,18 +204,14 @@ bool search(const Rod& rod, double share, double start, State& state, Workspace&
   return false;
 }
 
-bool factor_with(double shift, Workspace& work) {
-  work.factors = work.system.hessian;
-  for (int k = 0; k < work.factors.size; ++k) work.factors.at(k, k) += shift * work.metric[static_cast<std::size_t>(k)];
-  const math::Inertia inertia = math::factor(work.factors);
-  return inertia.sound && inertia.negative == 0;
-}
-
 /// Leaves a saddle along its softest mode, found by inverse iteration, to the lower side. `shift` makes the Hessian
 /// positive; it is narrowed down first, for then the softest mode stands out.
 bool kick(const Rod& rod, double shift, double start, State& state, Workspace& work, double& now) {
   double low = 0.01 * shift, high = shift;
-  for (int pass = 0; pass < 8; ++pass) (factor_with(std::sqrt(low * high), work) ? high : low) = std::sqrt(low * high);
+  for (int pass = 0; pass < 8; ++pass) {
+    const double middle = std::sqrt(low * high);
+    (factor_with(middle, work) == 0 ? high : low) = middle;
+  }
   factor_with(high, work);
   work.mode.resize(work.metric.size());
   for (std::size_t k = 0; k < work.mode.size(); ++k) work.mode[k] = std::sin(1.0 + 7.0 * static_cast<double>(k));
@@ -286,7 +288,7 @@ Report minimise(const Rod& rod, const Options& options, State& state, Workspace&
   Report report;
   State at = state;
   find_metric(rod, work.unknowns, work.metric);
-  if (!follow_supports(rod, at, work, report)) {
+  if (!follow_supports(rod, options.predict, at, work, report)) {
     report.outcome = Outcome::blocked;
     return report;
   }

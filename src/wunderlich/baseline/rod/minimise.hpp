@@ -24,6 +24,8 @@ double value(const Rod& rod, const Objective& objective, const State& state);
 struct Options {
   double tolerance = 1e-8;  ///< on the last step: displacement / length, turn of a section [rad]
   int max_iterations = 500;
+  bool predict = true;        ///< supports that move carry the rest along as the linearised rod would follow, if that
+                              ///< takes less energy than leaving it where it is
   bool leave_saddles = true;  ///< go on from a stationary point that has negative modes
 };
 

@@ -1,7 +1,6 @@
 /// Discrete elastic rod: a strip as a centreline with a turning cross-section, which may stretch, bend both ways and twist.
 ///
-/// The model of Bergou et al. 2008 in the form of 2010: time-parallel reference frames, curvature averaged over the two
-/// frames at a node. Index families are the ribbon's: node i in [0, segments], edge j from node j to j + 1; a loop
+/// The model of Bergou et al. 2008 with the time-parallel reference frames of 2010. Index families are the ribbon's: node i in [0, segments], edge j from node j to j + 1; a loop
 /// repeats its first node as node `segments`. Directions are the ribbon's as well: m1 normal to the strip, m2 across it.
 #pragma once
 
@@ -30,6 +29,13 @@ Stiffness physical(const geometry::RibbonSpec& spec, double poisson_ratio, doubl
 /// the stretching stiffness is that rectangle's.   @eq Shen2015:6.5
 Stiffness paper_ratio(const geometry::RibbonSpec& spec);
 
+/// How a node's bending is measured, which has a section on either side.
+enum class Bending {
+  averaged,  ///< by one curvature, in the mean of the two sections   @eq Bergou2010
+  separate,  ///< by two curvatures, one in each section, whose energies are averaged. Where a strip twists by phi from
+             ///< edge to edge, it then bends about m1 as well, and seems stiffer by hard phi^2/4.   @eq Bergou2008:2
+};
+
 /// The rod: constant through a run. Naturally straight and untwisted.
 struct Rod {
   int segments = 0;
@@ -37,6 +43,7 @@ struct Rod {
   int half_twists = 0;  ///< loops: turns of pi of the section about the tangent, from edge 0 round to edge 0
   double length = 0, width = 0;
   Stiffness stiffness;
+  Bending bending = Bending::averaged;
   double area_density = 0;           ///< [kg/m^2]
   std::vector<double> rest_length;   ///< (segments) [m]
   std::vector<double> hinge_length;  ///< (segments + 1) that a node's bending stands for, 0 at the ends of an open rod
