@@ -27,8 +27,8 @@ rod::State perturbed(rod::State state, double amount) {
   return state;
 }
 
-// The figures are those of an independent C++ rod (separate curvatures, exact Hessians) that is loaded in 20 equal steps,
-// supports first and all else after them. Such rods have many equilibria close to one another.
+// The figures are those of an independent C++ rod (separate curvatures, exact Hessians) that is loaded in 20 equal
+// steps, supports first and all else after them. Such rods have many equilibria close to one another.
 // @eq Bergou2008:2
 TEST(RodEquilibrium, ProblemTAgreesWithAnIndependentCode) {
   for (const auto& [nodes, expected] : {std::pair{50, 0.1513}, {100, 0.1396}}) {
@@ -37,8 +37,8 @@ TEST(RodEquilibrium, ProblemTAgreesWithAnIndependentCode) {
     sample.bending = rod::Bending::separate;
     rod::Options options;
     options.predict = false;
-    const PathEnd end = along_path(sample, problem_t_surroundings(nodes),
-                                   perturbed(rod::straight_state(sample), 1e-4), 20, options);
+    const PathEnd end =
+        along_path(sample, problem_t_surroundings(nodes), perturbed(rod::straight_state(sample), 1e-4), 20, options);
     ASSERT_TRUE(end.done) << rod::outcome_name(end.last.outcome);
     EXPECT_EQ(end.last.negative_modes, 0);
     EXPECT_NEAR(end.energy, expected, 0.02 * expected) << nodes;
@@ -91,8 +91,8 @@ TEST(RodEquilibrium, RingHasItsEnergyToSecondOrder) {
   expect_order(errors, 1.8);
 }
 
-/// End of a cantilever of length 1 whose end is pulled sideways by `load` times its stiffness: theta'' = -load cos theta,
-/// by shooting from the free end with a fourth-order method.
+/// End of a cantilever of length 1 whose end is pulled sideways by `load` times its stiffness: theta'' = -load cos
+/// theta, by shooting from the free end with a fourth-order method.
 Vec2 elastica_end(double load) {
   struct Point {
     double angle, slope, x, y;
@@ -101,7 +101,9 @@ Vec2 elastica_end(double load) {
     const int steps = 2000;
     const double h = 1.0 / steps;
     Point p{end_angle, 0, 0, 0};
-    const auto rate = [&](const Point& q) { return Point{-q.slope, load * std::cos(q.angle), std::cos(q.angle), std::sin(q.angle)}; };
+    const auto rate = [&](const Point& q) {
+      return Point{-q.slope, load * std::cos(q.angle), std::cos(q.angle), std::sin(q.angle)};
+    };
     const auto plus = [](const Point& q, double f, const Point& r) {
       return Point{q.angle + f * r.angle, q.slope + f * r.slope, q.x + f * r.x, q.y + f * r.y};
     };
@@ -128,7 +130,8 @@ TEST(RodEquilibrium, CantileverIsTheElasticaToSecondOrder) {
     const Rod sample = rod::make_rod(spec, rod::Stiffness{1e7, 2, 50, 1});
     constraint::Surroundings surroundings;
     surroundings.supports = {clamp(0, {Vec3::Zero(), straight_frame()}, Vec3::Zero(), 0)};
-    surroundings.loads = {{n, constraint::LoadFrame::space, {{0, Vec3::Zero(), Vec3::Zero()}, {1, Vec3(0, 0, 2 * load), Vec3::Zero()}}}};
+    surroundings.loads = {
+        {n, constraint::LoadFrame::space, {{0, Vec3::Zero(), Vec3::Zero()}, {1, Vec3(0, 0, 2 * load), Vec3::Zero()}}}};
     const PathEnd end = along_path(sample, surroundings, rod::straight_state(sample), 4);
     ASSERT_TRUE(end.done) << rod::outcome_name(end.last.outcome);
     const Vec3 tip = end.state.x.back() - Vec3(0.5 * spec.length / n, 0, 0);

@@ -113,8 +113,8 @@ TEST(RodMotion, DrapesOverACylinderWithoutEnteringIt) {
     nearest = std::min(nearest, rod::clearance(sample, surroundings, state));
   }
   EXPECT_GT(nearest, 0);
-  EXPECT_LT(nearest, 0.001);                             // it did touch,
-  EXPECT_GT(state.x[10].z(), -0.04);                     // lies on top
+  EXPECT_LT(nearest, 0.001);                                    // it did touch,
+  EXPECT_GT(state.x[10].z(), -0.04);                            // lies on top
   EXPECT_LT(std::max(state.x[0].z(), state.x[20].z()), -0.06);  // and both ends hang down.
 }
 

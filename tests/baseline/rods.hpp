@@ -27,8 +27,8 @@ Quat straight_frame();
 /// A clamp that goes from a pose to a place while load parameter goes from 0 to 1, turning about d3.
 constraint::Support clamp(int node, const Pose& from, const Vec3& to, double turn);
 
-/// Problem T: length 1, width 0.1, h = 1e-3, E = 1e9, nu = 0.3; first and last edge clamped, the ends turned by +-pi/2 and
-/// brought together by 0.05.
+/// Problem T: length 1, width 0.1, h = 1e-3, E = 1e9, nu = 0.3; first and last edge clamped, the ends turned by +-pi/2
+/// and brought together by 0.05.
 geometry::RibbonSpec problem_t_spec(int nodes);
 constraint::Surroundings problem_t_surroundings(int nodes);
 

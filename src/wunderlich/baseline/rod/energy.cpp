@@ -11,11 +11,11 @@ namespace {
 
 /// Two edges that meet, with their sections; what all strains at a node are made of.
 struct Bend {
-  Vec3 e, f;             ///< edges [m]
-  double e_len, f_len;   ///< [m]
+  Vec3 e, f;            ///< edges [m]
+  double e_len, f_len;  ///< [m]
   Section before, after;
-  double scale;          ///< |e||f| + e.f: the curvature binormal is 2 e x f over it   @eq Bergou2008:1
-  double twist;          ///< [rad]
+  double scale;  ///< |e||f| + e.f: the curvature binormal is 2 e x f over it   @eq Bergou2008:1
+  double twist;  ///< [rad]
 };
 
 Bend bend_at(const Rod& rod, const State& state, std::size_t node) {
@@ -132,7 +132,8 @@ void add_twisting(const Bend& b, const Vec3& cross, double twist, Vec8& g, Mat8&
   const Vec3 binormal = 2 / b.scale * cross, tilde = (t + u) / (1 + t.dot(u));
   h.block<3, 3>(0, 0) -= moment / (4 * b.e_len * b.e_len) * both(binormal, t + tilde);
   h.block<3, 3>(4, 4) -= moment / (4 * b.f_len * b.f_len) * both(binormal, u + tilde);
-  const Mat3 mixed = moment / (2 * b.e_len * b.f_len) * (2 / (1 + t.dot(u)) * math::skew(t) - binormal * tilde.transpose());
+  const Mat3 mixed =
+      moment / (2 * b.e_len * b.f_len) * (2 / (1 + t.dot(u)) * math::skew(t) - binormal * tilde.transpose());
   h.block<3, 3>(0, 4) += mixed;
   h.block<3, 3>(4, 0) += mixed.transpose();
 }

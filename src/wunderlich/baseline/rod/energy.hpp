@@ -1,7 +1,7 @@
 /// Elastic energy of a rod with exact first and second derivatives in its coordinates (see frames.hpp).
 ///
-/// Derivatives are those of the energy as a function of increments from the very state they are taken at, frames carried
-/// along: the gauge in which transport in time adds nothing to first order, and a known term to second.
+/// Derivatives are those of the energy as a function of increments from the very state they are taken at, frames
+/// carried along: the gauge in which transport in time adds nothing to first order, and a known term to second.
 #pragma once
 
 #include <array>

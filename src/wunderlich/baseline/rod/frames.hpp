@@ -5,8 +5,9 @@
 
 namespace wunderlich::baseline::rod {
 
-/// The vector `a`, square to the unit vector `from`, turned by the smallest rotation that takes `from` to the unit vector
-/// `to`; square to `to` and of unit length to rounding if it was. Undefined for opposite vectors.   @eq Bergou2008:4.2
+/// The vector `a`, square to the unit vector `from`, turned by the smallest rotation that takes `from` to the unit
+/// vector `to`; square to `to` and of unit length to rounding if it was. Undefined for opposite vectors.
+/// @eq Bergou2008:4.2
 inline Vec3 carried(const Vec3& a, const Vec3& from, const Vec3& to) {
   Vec3 b = a - a.dot(to) / (1 + from.dot(to)) * (from + to);
   b -= b.dot(to) * to;

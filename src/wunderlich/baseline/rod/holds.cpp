@@ -28,7 +28,8 @@ void hold_coordinate(std::size_t coordinate, double increment, Unknowns& u) {
 
 void hold_position(const Support& support, const Vec3& increment, Unknowns& u) {
   for (std::size_t c = 0; c < 3; ++c) {
-    if (support.hold_position[c]) hold_coordinate(4 * static_cast<std::size_t>(support.node) + c, increment[static_cast<int>(c)], u);
+    if (support.hold_position[c])
+      hold_coordinate(4 * static_cast<std::size_t>(support.node) + c, increment[static_cast<int>(c)], u);
   }
 }
 

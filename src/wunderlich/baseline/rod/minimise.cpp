@@ -9,9 +9,9 @@ namespace wunderlich::baseline::rod {
 
 namespace {
 
-constexpr double kLargestBend = 0.8;     // change of an edge in one iteration, over its rest length
-constexpr double kLargestTurn = 1;       // of a section [rad]
-constexpr double kLeastShift = 1e-4;     // over soft/length^4: what needs no more is neutral to rounding
+constexpr double kLargestBend = 0.8;  // change of an edge in one iteration, over its rest length
+constexpr double kLargestTurn = 1;    // of a section [rad]
+constexpr double kLeastShift = 1e-4;  // over soft/length^4: what needs no more is neutral to rounding
 constexpr int kMostShifts = 24, kMostHalvings = 40, kMostKicks = 30;
 
 /// Adds a term's derivatives by the coordinates `at`, which need not be unknowns, nor different ones.
@@ -76,7 +76,8 @@ void add_ties(const Rod& rod, const Objective& objective, const State& state, co
 void add_barrier(const Rod& rod, const Objective& objective, const State& state, const Unknowns& u, System& system) {
   for (std::size_t j = 0; j < rod.edges(); ++j) {
     TouchTerms t{Vec7::Zero(), Mat7::Zero()};
-    if (barrier_energy(rod, objective.solids, state, j, &t) != 0) add_term<7>(u, from<7>(4 * j), t.gradient, t.hessian, system);
+    if (barrier_energy(rod, objective.solids, state, j, &t) != 0)
+      add_term<7>(u, from<7>(4 * j), t.gradient, t.hessian, system);
   }
 }
 
@@ -163,7 +164,8 @@ double norm(const std::vector<double>& v) {
 /// energy. False if either way is barred.
 bool follow_supports(const Rod& rod, bool predict, State& state, Workspace& work, Report& report) {
   const Objective& objective = work.objective;
-  const bool moved = std::any_of(work.unknowns.given.begin(), work.unknowns.given.end(), [](double x) { return x != 0; });
+  const bool moved =
+      std::any_of(work.unknowns.given.begin(), work.unknowns.given.end(), [](double x) { return x != 0; });
   if (!moved) return true;
   work.step.assign(static_cast<std::size_t>(work.unknowns.count), 0.0);
   expand(work.unknowns, work.step, 1, work.increment);

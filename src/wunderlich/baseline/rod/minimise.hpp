@@ -10,10 +10,10 @@ namespace wunderlich::baseline::rod {
 
 /// What is minimised beside the elastic energy: dead loads, springs that stand for a step of time, a barrier.
 struct Objective {
-  std::vector<Vec3> force;      ///< (segments + 1) [N]
-  std::vector<double> moment;   ///< (segments) on the turn of an edge [N m]
-  std::vector<Mat3> node_tie;   ///< (segments + 1) stiffness [N/m]; empty in equilibria
-  std::vector<Vec3> node_goal;  ///< (segments + 1) [m]
+  std::vector<Vec3> force;                  ///< (segments + 1) [N]
+  std::vector<double> moment;               ///< (segments) on the turn of an edge [N m]
+  std::vector<Mat3> node_tie;               ///< (segments + 1) stiffness [N/m]; empty in equilibria
+  std::vector<Vec3> node_goal;              ///< (segments + 1) [m]
   std::vector<double> edge_tie, edge_goal;  ///< (segments) [N m], [rad]
   Solids solids;
 };
@@ -61,8 +61,7 @@ struct Workspace {
 
 /// Gradient and Hessian at a state. The increments that supports give are taken to first order: their part of the
 /// Hessian times them is added to the gradient, so that a Newton step answers to them.
-void assemble(const Rod& rod, const Objective& objective, const State& state, const Unknowns& unknowns,
-              System& system);
+void assemble(const Rod& rod, const Objective& objective, const State& state, const Unknowns& unknowns, System& system);
 
 /// Moves the supports of `work.unknowns` and finds a minimum of `work.objective` near the state, which changes only if
 /// the method converges; its velocities and time do not.

@@ -87,7 +87,8 @@ Report step(const Rod& rod, const constraint::Surroundings& surroundings, const 
 double kinetic_energy(const Rod& rod, const State& state) {
   double sum = 0;
   for (std::size_t i = 0; i < rod.nodes(); ++i) sum += 0.5 * rod.node_mass[i] * state.v[i].squaredNorm();
-  for (std::size_t j = 0; j < rod.edges(); ++j) sum += 0.5 * rod.edge_inertia[j] * state.theta_dot[j] * state.theta_dot[j];
+  for (std::size_t j = 0; j < rod.edges(); ++j)
+    sum += 0.5 * rod.edge_inertia[j] * state.theta_dot[j] * state.theta_dot[j];
   return sum;
 }
 

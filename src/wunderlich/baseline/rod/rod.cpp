@@ -35,8 +35,8 @@ Stiffness rectangle(double youngs_modulus, double poisson_ratio, double width, d
 }
 
 Stiffness physical(const geometry::RibbonSpec& spec, double poisson_ratio, double thickness) {
-  const double youngs_modulus = 12 * spec.bending_stiffness * (1 - poisson_ratio * poisson_ratio) /
-                                (thickness * thickness * thickness);
+  const double youngs_modulus =
+      12 * spec.bending_stiffness * (1 - poisson_ratio * poisson_ratio) / (thickness * thickness * thickness);
   return rectangle(youngs_modulus, poisson_ratio, spec.width, thickness);
 }
 

@@ -1,7 +1,9 @@
-/// Discrete elastic rod: a strip as a centreline with a turning cross-section, which may stretch, bend both ways and twist.
+/// Discrete elastic rod: a strip as a centreline with a turning cross-section, which may stretch, bend both ways and
+/// twist.
 ///
-/// The model of Bergou et al. 2008 with the time-parallel reference frames of 2010. Index families are the ribbon's: node i in [0, segments], edge j from node j to j + 1; a loop
-/// repeats its first node as node `segments`. Directions are the ribbon's as well: m1 normal to the strip, m2 across it.
+/// The model of Bergou et al. 2008 with the time-parallel reference frames of 2010. Index families are the ribbon's:
+/// node i in [0, segments], edge j from node j to j + 1; a loop repeats its first node as node `segments`. Directions
+/// are the ribbon's as well: m1 normal to the strip, m2 across it.
 #pragma once
 
 #include <vector>
@@ -19,7 +21,7 @@ struct Stiffness {
   double twist = 0;    ///< GJ [N m^2]
 };
 
-/// Of a rectangular section: E w h^3/12, E h w^3/12, G w h^3/3 (1 - 0.63 h/w), E w h. SI units.   @eq Roark2002:10.1
+/// Of a rectangular section: E w h^3/12, E h w^3/12, G w h^3/3 (1 - 0.63 h/w), E w h. SI units.   @eq Roark2002
 Stiffness rectangle(double youngs_modulus, double poisson_ratio, double width, double thickness);
 
 /// The same where the strip's bending stiffness D = E h^3/(12 (1 - nu^2)) is given instead of E.

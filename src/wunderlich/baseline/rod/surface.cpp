@@ -28,13 +28,14 @@ Rims rims(const Rod& rod, const State& state) {
   return out;
 }
 
-double patch_area(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
+/// Area between two nodes; across directions in between are those of the nodes mixed, at unit length.
+double patch_area(double width, const Vec3& edge, const Vec3& across0, const Vec3& across1) {
   double area = 0;
   for (int i = 0; i < 4; ++i) {
+    const Vec3 mix = (1 - kAt[i]) * across0 + kAt[i] * across1, across = mix.normalized();
+    const Vec3 change = across1 - across0, turn = (change - change.dot(across) * across) / mix.norm();
     for (int k = 0; k < 4; ++k) {
-      const Vec3 along = (1 - kAt[k]) * (a1 - a0) + kAt[k] * (b1 - b0);
-      const Vec3 across = (1 - kAt[i]) * (b0 - a0) + kAt[i] * (b1 - a1);
-      area += kWeight[i] * kWeight[k] * along.cross(across).norm();
+      area += kWeight[i] * kWeight[k] * width * (edge + width * (kAt[k] - 0.5) * turn).cross(across).norm();
     }
   }
   return area;
@@ -97,9 +98,11 @@ Mesh surface_mesh(const Rod& rod, const State& state, int across) {
 }
 
 double area_change(const Rod& rod, const State& state) {
-  const Rims rim = rims(rod, state);
   double area = 0;
-  for (std::size_t j = 0; j < rod.edges(); ++j) area += patch_area(rim.low[j], rim.low[j + 1], rim.high[j], rim.high[j + 1]);
+  for (std::size_t j = 0; j < rod.edges(); ++j) {
+    area += patch_area(rod.width, state.x[j + 1] - state.x[j], node_frame(rod, state, j).col(1),
+                       node_frame(rod, state, j + 1).col(1));
+  }
   return area / (rod.length * rod.width) - 1;
 }
 
