@@ -19,10 +19,11 @@ LAYERS = {
     "energy": ["base", "math", "geometry"],
     "constraint": ["base", "math", "geometry", "contact"],
     "solver": ["base", "math", "geometry", "energy", "contact", "constraint"],
-    "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver"],
+    "baseline": ["base", "math", "geometry", "contact", "constraint"],
+    "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver", "baseline"],
     "io": ["base"],
 }
-CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver"]
+CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver", "baseline"]
 # layer -> prefixes of third-party headers it may include; what has no slash and no dot is the standard library
 THIRD_PARTY = {layer: ["Eigen/"] for layer in CORE}
 THIRD_PARTY["scene"] = ["Eigen/", "yaml-cpp/", "fmt/"]
