@@ -29,12 +29,10 @@ CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbo
   const double wave = std::sqrt(ribbon.area_density / ribbon.bending_stiffness) * ribbon.length * ribbon.length;
   options.load_time = number_or(child(cell, "load_time"), kLoadTime * wave);
   options.settle_time = number_or(child(cell, "settle_time"), options.load_time);
-  options.time_step =
-      number_or(child(cell, "time_step"), path ? options.load_time / kStepsOfLoad : solver.time_step);
+  options.time_step = number_or(child(cell, "time_step"), path ? options.load_time / kStepsOfLoad : solver.time_step);
   options.damping =
       number_or(child(cell, "damping"),
-                path ? kDamping / options.load_time
-                     : number(child(child(child(root, "solver"), "damping"), "normal")));
+                path ? kDamping / options.load_time : number(child(child(child(root, "solver"), "damping"), "normal")));
   options.conforming = shell_of(child(cell, "shell_conforming"), options.time_step);
   options.nonconforming = shell_of(child(cell, "shell_nonconforming"), options.time_step);
   return options;
