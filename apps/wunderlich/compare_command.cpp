@@ -43,6 +43,7 @@ int exit_code(const Comparison& comparison) {
 int compare_command(const CompareArguments& arguments) {
   const std::vector<scene::Model> models = scene::parse_models(arguments.models);
   const scene::Scene scene = scene::read_scene(arguments.scene, arguments.set);
+  scene::check_comparable(scene);
   scene::check_start(scene);
   const std::filesystem::path folder = arguments.out.empty() ? std::filesystem::path("out") / (scene.name + "-compare")
                                                              : std::filesystem::path(arguments.out);

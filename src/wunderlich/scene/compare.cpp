@@ -93,9 +93,12 @@ ModelResult run_model(const Scene& scene, Model model, const Observer& observer)
   return run_shell(scene, model, named);
 }
 
-Comparison compare(const Scene& scene, const std::vector<Model>& models, const Observer& observer) {
+void check_comparable(const Scene& scene) {
   if (!scene.beside.empty())
     throw InputError(scene.name + ": models are compared on one strip; this scene has several");
+}
+
+Comparison compare(const Scene& scene, const std::vector<Model>& models, const Observer& observer) {
   Comparison comparison{scene.name, scene.title, scene.resolved, {}, {}};
   for (const Model model : models) {
     comparison.models.push_back(run_model(scene, model, observer));

@@ -22,8 +22,10 @@ std::vector<Model> parse_models(const std::string& list);
 /// `converged`, with "interrupted" for a failure.
 ModelResult run_model(const Scene& scene, Model model, const Observer& observer);
 
-/// All of them, one after the other, with the scene's obstacles at their frames. Throws InputError where the scene has
-/// several strips.
+/// Throws InputError where the scene has several strips.
+void check_comparable(const Scene& scene);
+
+/// All of them, one after the other, with the scene's obstacles at their frames.
 Comparison compare(const Scene& scene, const std::vector<Model>& models, const Observer& observer);
 
 }  // namespace wunderlich::scene

@@ -82,7 +82,7 @@ const std::vector<Key> table = {
      1e9,
      "",
      {},
-     "And so long it may move on until it is at rest. Default: `compare.load_time`."},
+     "And so long it may move on until it is at rest. Default: 10 `compare.load_time`."},
     {"compare.damping",
      Type::number,
      "1/s",
