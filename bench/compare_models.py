@@ -16,13 +16,13 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-RIGHT = ["ribbon.segments=200", "solver.time_step=2.5e-4"]
+RIGHT = ["solver.method=implicit", "ribbon.segments=200", "solver.time_step=2.5e-4"]
 
 
 def cases():
     """(name, model, settings)."""
     for segments, step in ((10, 2e-2), (20, 1e-2), (35, 5e-3), (50, 5e-3)):
-        yield f"ribbon, implicit, {segments}, {1e3 * step:g} ms", "ribbon", [f"ribbon.segments={segments}",
+        yield f"ribbon, implicit, {segments}, {1e3 * step:g} ms", "ribbon", ["solver.method=implicit", f"ribbon.segments={segments}",
                                                                            f"solver.time_step={step}"]
     for segments in (20, 35):
         yield f"ribbon, two-stage, {segments}, 5 ms", "ribbon", [f"ribbon.segments={segments}", "solver.method=two-stage",
