@@ -36,4 +36,14 @@ struct ExportArguments {
 
 int export_command(const ExportArguments& arguments);
 
+struct CompareArguments {
+  std::string scene;
+  std::string models = "ribbon,rod,shell-conforming,shell-nonconforming";
+  std::string out;  ///< empty: out/<scene>-compare
+  std::vector<std::string> set;
+  bool quiet = false;
+};
+
+int compare_command(const CompareArguments& arguments);
+
 }  // namespace wunderlich::app

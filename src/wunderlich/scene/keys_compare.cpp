@@ -1,0 +1,101 @@
+#include "wunderlich/scene/schema.hpp"
+
+namespace wunderlich::scene {
+
+namespace {
+
+const std::vector<Key> table = {
+    {"compare",
+     Type::map,
+     "",
+     0,
+     0,
+     "",
+     {},
+     "How the models beside the ribbon are built; `wunderlich compare` reads it."},
+    {"compare.rod", Type::map, "", 0, 0, "", {}, "The discrete elastic rod."},
+    {"compare.rod.segments", Type::integer, "", 3, 1e5, "", {}, "Its edges. Default: the ribbon's segments."},
+    {"compare.rod.stiffness",
+     Type::choice,
+     "",
+     0,
+     0,
+     "physical",
+     {"physical", "ratio"},
+     "`physical`: of a rectangular section of `compare.thickness`. `ratio`: bending in the strip's plane, across it "
+     "and "
+     "twist as 10^4 : 1 : 2, the paper's."},
+    {"compare.shell_conforming", Type::map, "", 0, 0, "", {}, "The shell on vertices."},
+    {"compare.shell_conforming.along", Type::integer, "", 3, 1e4, "36", {}, "Vertices along the strip."},
+    {"compare.shell_conforming.across", Type::integer, "", 2, 1e3, "12", {}, "And across it."},
+    {"compare.shell_conforming.time_step", Type::number, "s", 1e-9, 1000, "", {}, "Default: see `compare.time_step`."},
+    {"compare.shell_nonconforming", Type::map, "", 0, 0, "", {}, "The shell on midpoints of edges."},
+    {"compare.shell_nonconforming.along", Type::integer, "", 3, 1e4, "26", {}, "Vertices along the strip."},
+    {"compare.shell_nonconforming.across", Type::integer, "", 2, 1e3, "8", {}, "And across it."},
+    {"compare.shell_nonconforming.time_step",
+     Type::number,
+     "s",
+     1e-9,
+     1000,
+     "",
+     {},
+     "Default: see `compare.time_step`."},
+    {"compare.thickness",
+     Type::number,
+     "m",
+     1e-9,
+     1e3,
+     "",
+     {},
+     "h of the rod's section. Default: `ribbon.thickness`, or a hundredth of the width."},
+    {"compare.poisson_ratio", Type::number, "", -0.99, 0.5, "", {}, "nu of the rod. Default: `ribbon.poisson_ratio`."},
+    {"compare.length_tolerance",
+     Type::number,
+     "",
+     1e-12,
+     1,
+     "0.01",
+     {},
+     "Shells: relative error of a length at which fast projection stops; the paper's is 1 %."},
+    {"compare.time_step",
+     Type::number,
+     "s",
+     1e-9,
+     1000,
+     "",
+     {},
+     "Of the rod and the shells in a motion. Default: `solver.time_step`; for a path of loads, "
+     "`compare.load_time`/2000."},
+    {"compare.load_time",
+     Type::number,
+     "s",
+     1e-9,
+     1e9,
+     "",
+     {},
+     "Equilibria: a shell finds them by moving; so long a unit of the load parameter takes it. Default: "
+     "2 sqrt(rho l^4/D)."},
+    {"compare.settle_time",
+     Type::number,
+     "s",
+     0,
+     1e9,
+     "",
+     {},
+     "And so long it may move on until it is at rest. Default: 10 `compare.load_time`."},
+    {"compare.damping",
+     Type::number,
+     "1/s",
+     0,
+     1e6,
+     "",
+     {},
+     "Rate at which velocities decay meanwhile. Default: 20/`compare.load_time`; in a motion, "
+     "`solver.damping.normal`."},
+};
+
+}  // namespace
+
+const std::vector<Key>& compare_keys() { return table; }
+
+}  // namespace wunderlich::scene
