@@ -29,8 +29,10 @@ PathEnd twisted_under_tension(const Rod& sample, double turn, double tension) {
 TEST(RodSurface, FlatStripIsFlat) {
   const Rod sample = rod::make_rod(fig8_spec(), rod::paper_ratio(fig8_spec()));
   const rod::State state = rod::straight_state(sample);
-  EXPECT_NEAR(rod::area_change(sample, state), 0, 1e-14);
-  EXPECT_NEAR(rod::rim_stretch(sample, state)[0], 0, 1e-14);
+  const IsometryErrors errors = geometry::isometry_errors(rod::surface_grid(sample, state, 4));
+  EXPECT_NEAR(errors.area, 0, 1e-14);
+  EXPECT_NEAR(errors.diagonal, 0, 1e-14);
+  EXPECT_NEAR(errors.rim, 0, 1e-14);
   const std::vector<Vec3> points = rod::surface_points(sample, state, 4);
   ASSERT_EQ(points.size(), 36u * 5);
   EXPECT_LE((points[5 * 9 + 2] - state.x[9]).norm(), 1e-15);
@@ -50,10 +52,9 @@ TEST(RodSurface, TwistedUnderTensionItIsAHelicoid) {
     const double rim = twisted * (std::sqrt(1 + half * half) - 1) + stretch;
     const double area = twisted * (0.5 * (std::sqrt(1 + half * half) + std::asinh(half) / half) - 1) + stretch;
     EXPECT_NEAR(stretch, 100 / sample.width / sample.stiffness.stretch, 1e-5);
-    const auto rims = rod::rim_stretch(sample, end.state);
-    EXPECT_NEAR(rod::area_change(sample, end.state), area, 0.03 * area);
-    EXPECT_NEAR(rims[0], rim, 0.03 * rim);
-    EXPECT_NEAR(rims[1], rims[0], 1e-6);
+    const IsometryErrors errors = geometry::isometry_errors(rod::surface_grid(sample, end.state, 8));
+    EXPECT_NEAR(errors.area, area, 0.03 * area);
+    EXPECT_NEAR(errors.rim, rim, 0.03 * rim);
   }
 }
 

@@ -53,6 +53,65 @@ class Compare(ProgramTest):
         self.assertIn("open strips", result.stderr)
         self.assertEqual(self.table("there")["shell-conforming"]["converged"], "0")
 
+    def rows(self, text, *settings, models="ribbon,rod"):
+        """The table of a scene, and what the program said of it."""
+        self.write("scene.yaml", text)
+        result = self.expect(0, "compare", "scene.yaml", "--models", models, *settings, "--out", "there", "--quiet")
+        return self.table("there"), result.stderr
+
+    def ends(self, model):
+        """Middles of the first and the last column of points of the surface that was written."""
+        text = (self.folder / f"there/{model}.obj").read_text()
+        points = [tuple(map(float, line.split()[1:4])) for line in text.splitlines() if line.startswith("v ")]
+        across = 9  # points
+        return [[sum(point[c] for point in column) / across for c in range(3)]
+                for column in (points[:across], points[-across:])]
+
+    def test_the_rod_goes_where_clamps_are(self):
+        moved = STRIP.replace("- at: start", "- {at: start, position: [1, 1, 1], tangent: [0, 1, 0]}")
+        here, _ = self.rows(STRIP, models="rod")
+        there, _ = self.rows(moved, models="rod")
+        self.assertAlmostEqual(float(there["rod"]["normalized"]) / float(here["rod"]["normalized"]), 1, delta=1e-6)
+        for got, want in zip(self.ends("rod")[0], (1, 1, 1)):
+            self.assertAlmostEqual(got, want, delta=1e-6)
+
+    def test_the_rod_is_brought_to_clamps_nearer_than_its_length(self):
+        rows, _ = self.rows("ribbon: {length: 1, width: 0.1, segments: 20}\n"
+                            "clamps: [{at: start}, {at: end, position: [0.6, 0, 0]}]\n"
+                            "solver: {method: equilibrium}\n")
+        ratio = float(rows["rod"]["normalized"]) / float(rows["ribbon"]["normalized"])
+        self.assertAlmostEqual(ratio, 1, delta=0.08)  # its free length is shorter by an edge in twenty
+        first, last = self.ends("rod")
+        self.assertAlmostEqual(last[0] - first[0], 0.6, delta=1e-6)
+
+    def test_the_rod_on_pins_and_with_edges_of_its_own(self):
+        pinned = ("ribbon: {length: 1, width: 0.1, segments: 12}\n"
+                  "clamps: [{at: start}]\npins: [{at: end, free: [x]}]\n"
+                  "gravity: [0, 0, -1]\nsolver: {method: equilibrium}\n")
+        energies = []
+        for edges in (12, 36):
+            rows, _ = self.rows(pinned, "--set", f"compare.rod.segments={edges}")
+            self.assertEqual(rows["rod"]["unknowns"], str(4 * edges + 3))
+            self.assertAlmostEqual(self.ends("rod")[1][2], 0, delta=1e-6)
+            energies.append(float(rows["rod"]["normalized"]) / float(rows["ribbon"]["normalized"]))
+        self.assertAlmostEqual(energies[1], 1, delta=0.15)
+        self.assertLess(abs(energies[1] - 1), abs(energies[0] - 1))
+
+    def test_the_rod_says_what_it_leaves_out(self):
+        lying = ("ribbon: {length: 0.3, width: 0.03, segments: 10, bending_stiffness: 3e-3, area_density: 0.1}\n"
+                 "gravity: [0, 0, -9.81]\n"
+                 "obstacles: [{shape: plane, position: [0, 0, -0.01]}]\n"
+                 "contact: {friction: FRICTION, self: SELF}\n"
+                 "solver: {method: implicit, duration: 0.1, time_step: 2e-3, damping: {normal: 20, tangent: 20}}\n")
+        _, said = self.rows(lying.replace("FRICTION", "0").replace("SELF", "false"), models="rod")
+        self.assertNotIn("note: rod", said)
+        for z in [end[2] for end in self.ends("rod")]:  # it fell, and the plane holds it
+            self.assertGreater(z, -0.01)
+            self.assertLess(z, -0.008)
+        _, said = self.rows(lying.replace("FRICTION", "0.5").replace("SELF", "true"), models="rod")
+        self.assertIn("note: rod: friction is not modelled", said)
+        self.assertIn("note: rod: the rod does not feel itself", said)
+
     def test_bad_input(self):
         self.expect_refused("compare", "strip.yaml", "--models", "rood", says=["rood", "rod"])
         self.expect_refused("compare", "strip.yaml", "--models", "rod,rod", says="twice")

@@ -22,6 +22,7 @@ CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbo
   CompareOptions options;
   const Cell segments = child(rod, "segments");
   options.rod_segments = segments.value != nullptr ? static_cast<int>(integer(segments)) : ribbon.segments;
+  if (ribbon.closure == geometry::Closure::loop && options.rod_segments < 3) fail(segments, "a loop needs at least 3");
   options.paper_ratio = text(child(rod, "stiffness")) == "ratio";
   options.thickness = number_or(child(cell, "thickness"), number_or(child(strip, "thickness"), kThin * ribbon.width));
   options.poisson_ratio = number_or(child(cell, "poisson_ratio"), number(child(strip, "poisson_ratio")));
@@ -30,9 +31,9 @@ CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbo
   options.load_time = number_or(child(cell, "load_time"), kLoadTime * wave);
   options.settle_time = number_or(child(cell, "settle_time"), kSettle * options.load_time);
   options.time_step = number_or(child(cell, "time_step"), path ? options.load_time / kStepsOfLoad : solver.time_step);
-  options.damping =
-      number_or(child(cell, "damping"),
-                path ? kDamping / options.load_time : number(child(child(child(root, "solver"), "damping"), "normal")));
+  const Cell damping = child(cell, "damping"), rates = child(child(root, "solver"), "damping");
+  options.damping = number_or(damping, path ? kDamping / options.load_time : number(child(rates, "normal")));
+  options.damping_tangent = number_or(damping, path ? options.damping : number(child(rates, "tangent")));
   options.conforming = shell_of(child(cell, "shell_conforming"), options.time_step);
   options.nonconforming = shell_of(child(cell, "shell_nonconforming"), options.time_step);
   return options;

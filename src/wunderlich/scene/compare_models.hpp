@@ -35,6 +35,13 @@ class ModelLog {
 /// The same supports, loads and obstacles with their keys `factor` times as far apart.
 constraint::Surroundings stretched(const constraint::Surroundings& surroundings, double factor);
 
+/// The same scene on so many segments of equal length: supports and loads at the nodes nearest to theirs, those at ends
+/// of the strip at its ends.
+Scene with_segments(const Scene& scene, int segments);
+
+/// Which supports, apart in the first scene, stand on one node of the second; empty if none do.
+std::string fallen_together(const Scene& scene, const Scene& other);
+
 ModelResult run_rod(const Scene& scene, const Observer& observer);
 ModelResult run_shell(const Scene& scene, Model model, const Observer& observer);
 

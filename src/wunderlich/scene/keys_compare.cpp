@@ -14,7 +14,15 @@ const std::vector<Key> table = {
      {},
      "How the models beside the ribbon are built; `wunderlich compare` reads it."},
     {"compare.rod", Type::map, "", 0, 0, "", {}, "The discrete elastic rod."},
-    {"compare.rod.segments", Type::integer, "", 3, 1e5, "", {}, "Its edges. Default: the ribbon's segments."},
+    {"compare.rod.segments",
+     Type::integer,
+     "",
+     2,
+     1e5,
+     "",
+     {},
+     "Its edges. Default: the ribbon's segments. Another number makes edges of equal length; supports and loads are at the "
+     "nodes nearest to the ribbon's."},
     {"compare.rod.stiffness",
      Type::choice,
      "",
@@ -91,7 +99,7 @@ const std::vector<Key> table = {
      "",
      {},
      "Rate at which velocities decay meanwhile. Default: 20/`compare.load_time`; in a motion, "
-     "`solver.damping.normal`."},
+     "`solver.damping.normal`, for the rod along its tangent `solver.damping.tangent`."},
 };
 
 }  // namespace

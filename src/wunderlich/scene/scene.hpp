@@ -84,7 +84,8 @@ struct CompareOptions {
   double time_step = 0;            ///< of the rod [s]
   double load_time = 0;            ///< of a unit of the load parameter, for models that move to an equilibrium [s]
   double settle_time = 0;          ///< and at most until they are at rest [s]
-  double damping = 0;              ///< [1/s]
+  double damping = 0;              ///< [1/s]; of the rod across its tangent
+  double damping_tangent = 0;      ///< of the rod along it [1/s]
 };
 
 struct Scene {
