@@ -21,7 +21,8 @@ const std::vector<Key> table = {
      1e5,
      "",
      {},
-     "Its edges. Default: the ribbon's segments. Another number makes edges of equal length; supports and loads are at the "
+     "Its edges. Default: the ribbon's segments. Another number makes edges of equal length; supports and loads are at "
+     "the "
      "nodes nearest to the ribbon's."},
     {"compare.rod.stiffness",
      Type::choice,
