@@ -97,6 +97,18 @@ class Compare(ProgramTest):
         self.assertAlmostEqual(energies[1], 1, delta=0.15)
         self.assertLess(abs(energies[1] - 1), abs(energies[0] - 1))
 
+    def test_the_rod_says_where_supports_are_on_edges_of_its_own(self):
+        inside = ("ribbon: {length: 1, width: 0.1, segments: 12}\n"
+                  "clamps: [{at: start}]\npins: [{at: {node: 3}}]\nsolver: {method: equilibrium}\n")
+        _, said = self.rows(inside, "--set", "compare.rod.segments=24", models="rod")
+        self.assertNotIn("note:", said)
+        _, said = self.rows(inside.replace("{node: 3}", "{node: 3}, position: [0.2, 0, 0]"),
+                            "--set", "compare.rod.segments=10", models="rod")
+        self.assertIn("up to 0.05 m from their places", said)
+        result = self.call("compare", "scene.yaml", "--models", "rod", "--set", "compare.rod.segments=2", "--out", "few")
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("fall on one of its own", result.stderr)
+
     def test_the_rod_says_what_it_leaves_out(self):
         lying = ("ribbon: {length: 0.3, width: 0.03, segments: 10, bending_stiffness: 3e-3, area_density: 0.1}\n"
                  "gravity: [0, 0, -9.81]\n"

@@ -39,6 +39,9 @@ constraint::Surroundings stretched(const constraint::Surroundings& surroundings,
 /// of the strip at its ends.
 Scene with_segments(const Scene& scene, int segments);
 
+/// How far along the strip a support or a load of the second scene is from its place in the first, at most [m].
+double largest_shift(const Scene& scene, const Scene& other);
+
 /// Which supports, apart in the first scene, stand on one node of the second; empty if none do.
 std::string fallen_together(const Scene& scene, const Scene& other);
 

@@ -211,6 +211,8 @@ ModelResult run_rod(const Scene& scene, const Observer& observer) {
   result.resolution = fmt::format("{} edges", run.rod.segments);
   result.unknowns = 4 * run.rod.segments + (run.rod.is_loop() ? 0 : 3);  // a loop's last node is its first
   result.notes = left_out(scene);
+  if (const double shift = largest_shift(scene, run.scene); shift > 1e-9 * scene.ribbon.length)
+    result.notes.push_back(fmt::format("supports or loads stand up to {:.2g} m from their places on the strip", shift));
   run.failure = fallen_together(scene, run.scene);
   if (run.failure.empty()) run.start();
   if (run.failure.empty()) result.converged = run.go();

@@ -29,6 +29,21 @@ Scene with_segments(const Scene& scene, int segments) {
   return out;
 }
 
+double largest_shift(const Scene& scene, const Scene& other) {
+  const std::vector<double> before = geometry::make_ribbon(scene.ribbon).node_u;
+  const std::vector<double> after = geometry::make_ribbon(other.ribbon).node_u;
+  double most = 0;
+  const auto look_at = [&](int from, int to) {
+    const double way = std::abs(before[static_cast<std::size_t>(from)] - after[static_cast<std::size_t>(to)]);
+    const bool loop = scene.ribbon.closure == geometry::Closure::loop;
+    most = std::max(most, loop ? std::min(way, scene.ribbon.length - way) : way);
+  };
+  const constraint::Surroundings &a = scene.surroundings, &b = other.surroundings;
+  for (std::size_t i = 0; i < a.supports.size(); ++i) look_at(a.supports[i].node, b.supports[i].node);
+  for (std::size_t i = 0; i < a.loads.size(); ++i) look_at(a.loads[i].node, b.loads[i].node);
+  return most;
+}
+
 std::string fallen_together(const Scene& scene, const Scene& other) {
   const auto& before = scene.surroundings.supports;
   const auto& after = other.surroundings.supports;
