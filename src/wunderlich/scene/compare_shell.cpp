@@ -24,7 +24,8 @@ namespace {
 
 constexpr double kBulge = 1e-4;  // over the length: out of its plane, so that a flat strip can buckle
 constexpr double kDrift = 2e-3;  // over the length: what points move by, in a quarter of the time of loading, at rest
-constexpr double kJerk = 1e-3;   // of the elastic energy: what may move at rest
+constexpr double kCreep = 1e-4;  // the same in the implicit metric, which has no jerks
+constexpr double kJerk = 1e-6;   // of the elastic energy: what may move at rest
 constexpr double kMaxMissed = 0.5, kMaxOff = 2;  // of the steps; of the tolerance
 constexpr int kMaxHalvings = 6;
 constexpr int kRounds = 50;  // of fast projection in a step; where it locks, more do not help
@@ -153,10 +154,11 @@ struct Run {
   /// off by the tolerance are put right by jerks, for ever.
   bool is_resting() {
     if (!path || state.time < loaded || state.time < next_look) return false;
-    const double moving = shell::kinetic_energy(shell, state.v);
-    const bool still = before.size() > 0 &&
-                       (state.x - before).rowwise().norm().maxCoeff() < kDrift * scene.ribbon.length &&
-                       (!scene.compare.implicit_metric || moving <= kJerk * shell::bending_energy(shell, state.x));
+    const bool implicit = options.metric == shell::Metric::implicit;
+    const double drift = (implicit ? kCreep : kDrift) * scene.ribbon.length;
+    const bool slow =
+        !implicit || shell::kinetic_energy(shell, state.v) <= kJerk * shell::bending_energy(shell, state.x);
+    const bool still = slow && before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < drift;
     before = state.x;
     next_look = state.time + 0.25 * factor;
     return still;
