@@ -93,6 +93,40 @@ TEST_P(ShellHold, AReleasedClampLetsGo) {
   EXPECT_LT(state.x(0, 2), height - 1e-3);
 }
 
+// Two points beside the centerline keep their distance: their mean is held, and they turn about it.
+TEST_P(ShellHold, APinBetweenTwoRowsHoldsTheirMean) {
+  const geometry::RibbonSpec strip = strip_of({false, false});
+  const Shell shell = make(GetParam(), strip, 6, 4);
+  constraint::Surroundings surroundings;
+  surroundings.gravity = Vec3(0, 0, -1);
+  for (const bool end : {false, true}) {
+    surroundings.supports.push_back(clamp_at(strip, end));
+    surroundings.supports.back().orientation = constraint::Orientation::free;
+  }
+  for (const Metric metric : {Metric::mass, Metric::implicit}) {
+    Options options;
+    options.metric = metric;
+    State state = straight_state(shell, surroundings);
+    Work work;
+    for (int k = 1; k <= 20; ++k) {
+      const StepReport report = step(shell, surroundings, options, 1e-3 * k, state, work);
+      ASSERT_TRUE(report.accepted) << k << ": " << report.failure;
+    }
+    Vec3 mean = Vec3::Zero();
+    std::vector<Vec3> near;
+    for (int p = 0; p < shell.point_count(); ++p) {
+      const Vec2& flat = shell.flat[static_cast<std::size_t>(p)];
+      if (std::abs(flat.x()) < 1e-9 && std::abs(flat.y()) < 0.051) near.push_back(state.x.row(p).transpose());
+    }
+    for (const Vec3& point : near) mean += point / static_cast<double>(near.size());
+    EXPECT_LT(mean.norm(), 1e-12);
+    const bool two = GetParam() == Kind::conforming;
+    ASSERT_EQ(near.size(), two ? 2 : 1);
+    EXPECT_NEAR((near.back() - near.front()).norm(), two ? 0.1 : 0, 0.01 * 0.1);
+    EXPECT_LT(state.x.col(2).minCoeff(), -1e-5);
+  }
+}
+
 TEST(ShellLimits, SaysWhatItDoesNotDo) {
   geometry::RibbonSpec strip = strip_of({true, true});
   constraint::Surroundings surroundings;

@@ -102,6 +102,31 @@ TEST_P(ShellStep, FrictionIsThatOfCoulomb) {
   EXPECT_NEAR(slide(GetParam(), 1.01 * std::tan(slope), slope), 0, 1e-9);
 }
 
+/// Elastic energy of a cantilever of D = l = 1 at rest under its weight of `load` D/l^3 a width.
+double resting_energy(Kind kind, double load, double h, int along) {
+  geometry::RibbonSpec strip;
+  strip.clamped = {true, false};
+  const Shell shell = make(kind, strip, along, 3);
+  constraint::Surroundings surroundings;
+  surroundings.supports = {clamp_at(strip, false)};
+  surroundings.gravity = Vec3(0, 0, -load);
+  Options options;
+  options.metric = Metric::implicit;
+  options.damping = 10;
+  State state = straight_state(shell, surroundings);
+  Work work;
+  for (int k = 1; k * h < 12; ++k) EXPECT_TRUE(step(shell, surroundings, options, k * h, state, work).accepted);
+  EXPECT_LT(kinetic_energy(shell, state.v), 1e-8 * bending_energy(shell, state.x));
+  EXPECT_LT(length_error(shell, state.x), 1e-5);
+  return bending_energy(shell, state.x);
+}
+
+TEST_P(ShellStep, RestInTheImplicitMetricDoesNotDependOnTheStep) {
+  const double coarse = resting_energy(GetParam(), 5, 2e-2, 11), fine = resting_energy(GetParam(), 5, 5e-3, 11);
+  EXPECT_GT(fine, 1e-3);
+  EXPECT_NEAR(coarse / fine, 1, 1e-3);
+}
+
 }  // namespace
 
 }  // namespace wunderlich::baseline::shell

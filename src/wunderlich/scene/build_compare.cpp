@@ -27,6 +27,8 @@ CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbo
   options.thickness = number_or(child(cell, "thickness"), number_or(child(strip, "thickness"), kThin * ribbon.width));
   options.poisson_ratio = number_or(child(cell, "poisson_ratio"), number(child(strip, "poisson_ratio")));
   options.length_tolerance = number(child(cell, "length_tolerance"));
+  const Cell metric = child(cell, "metric");
+  options.implicit_metric = metric.value != nullptr ? text(metric) == "implicit" : path;
   const double wave = std::sqrt(ribbon.area_density / ribbon.bending_stiffness) * ribbon.length * ribbon.length;
   options.load_time = number_or(child(cell, "load_time"), kLoadTime * wave);
   options.settle_time = number_or(child(cell, "settle_time"), kSettle * options.load_time);

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "wunderlich/baseline/shell/bending.hpp"
 #include "wunderlich/baseline/shell/measure.hpp"
 #include "wunderlich/baseline/shell/step.hpp"
 #include "wunderlich/baseline/shell_conforming/conforming.hpp"
 #include "wunderlich/baseline/shell_nonconforming/nonconforming.hpp"
+#include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/geometry/isometry.hpp"
 #include "wunderlich/scene/compare_models.hpp"
+#include "wunderlich/scene/recording.hpp"
 #include "wunderlich/scene/start.hpp"
+#include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
 
@@ -20,6 +24,9 @@ namespace {
 
 constexpr double kBulge = 1e-4;  // over the length: out of its plane, so that a flat strip can buckle
 constexpr double kDrift = 2e-3;  // over the length: what points move by, in a quarter of the time of loading, at rest
+constexpr double kCreep = 1e-4;  // the same in the implicit metric, which has no jerks
+constexpr double kJerk = 1e-6;   // of the elastic energy: what may move at rest
+constexpr double kMaxMissed = 0.5, kMaxOff = 2;  // of the steps; of the tolerance
 constexpr int kMaxHalvings = 6;
 constexpr int kRounds = 50;  // of fast projection in a step; where it locks, more do not help
 
@@ -46,6 +53,26 @@ geometry::StripGrid grid_of(const shell::Shell& shell, const shell::Points& x) {
   return grid;
 }
 
+/// Where the ribbon starts: its straight strip on its first support for a path, else that of `initial`.
+Start ribbon_start(const Scene& scene, const geometry::Ribbon& ribbon) {
+  if (scene.solver.method != Method::equilibrium) return start_of(scene, ribbon);
+  return {geometry::state_of(ribbon, solver::start_path(solver::make_path(ribbon, scene.surroundings, {})).chain, 0),
+          ""};
+}
+
+/// The point (u, v) of the ribbon's surface, `lift` [m] above it. Along a row v = const it has its corners on the
+/// rulings, at u_k + v eta_k; beyond the ends it goes on straight.   @eq Shen2015:1
+Vec3 on_ribbon(const geometry::Ribbon& ribbon, const geometry::State& state, const Vec2& flat, double lift) {
+  const auto corner = [&](std::size_t k) { return ribbon.node_u[k] + flat.y() * state.eta[k]; };
+  const std::size_t last = state.q.size() - 1;
+  std::size_t s = 0;
+  while (s < last && corner(s + 1) < flat.x()) ++s;
+  const bool before = flat.x() < 0 && ribbon.clamped[0], beyond = flat.x() > ribbon.length && ribbon.clamped[1];
+  const Quat& frame = before ? state.end_frame[0] : beyond ? state.end_frame[1] : state.q[s];
+  const std::size_t node = beyond ? last + 1 : s;
+  return state.r[node] + frame * Vec3(lift, flat.y(), flat.x() - ribbon.node_u[node]);
+}
+
 /// One run under way. A path of loads is gone through in time, slowly and damped, and then waited for.
 struct Run {
   Run(const Scene& s, Model model, const Observer& observer)
@@ -59,6 +86,7 @@ struct Run {
         failure(shell::unsupported(s.ribbon, s.surroundings)),
         shell(shell_of(s, model)),
         log(s, model, until, observer) {
+    options.metric = s.compare.implicit_metric ? shell::Metric::implicit : shell::Metric::mass;
     options.length_tolerance = s.compare.length_tolerance;
     options.max_iterations = kRounds;
     options.accept_inexact = true;  // else a mesh that locks could not be shown at all; it is counted
@@ -83,9 +111,25 @@ struct Run {
   bool rests = false;
 
   void start() {
-    if (!path && scene.initial.shape != InitialShape::straight) failure = "the shells start straight only";
-    state = shell::straight_state(shell, surroundings, path ? kBulge * scene.ribbon.length : 0);
-    for (Eigen::Index i = 0; i < state.v.rows(); ++i) state.v.row(i) += scene.initial.velocity.transpose();
+    const geometry::Ribbon ribbon = path ? geometry::make_ribbon(scene.ribbon) : motion_ribbon(scene, 0);
+    const Start start = ribbon_start(scene, ribbon);
+    failure = start.failure;
+    if (!failure.empty()) return;
+    state.x.setZero(shell.point_count(), 3);
+    state.v.setZero(shell.point_count(), 3);
+    Vec3 center = Vec3::Zero();
+    for (int p = 0; p < shell.point_count(); ++p) {
+      const Vec2& flat = shell.flat[static_cast<std::size_t>(p)];
+      const double u = flat.x() / ribbon.length;
+      const double lift = path && u > 0 && u < 1 ? kBulge * ribbon.length * std::sin(3.14159265358979323846 * u) : 0;
+      state.x.row(p) = on_ribbon(ribbon, start.shape, flat, lift).transpose();
+      center += shell.mass[static_cast<std::size_t>(p)] * state.x.row(p).transpose();
+    }
+    center /= std::accumulate(shell.mass.begin(), shell.mass.end(), 0.0);
+    for (int p = 0; p < shell.point_count() && !path; ++p) {
+      const Vec3 arm = state.x.row(p).transpose() - center;
+      state.v.row(p) = (scene.initial.velocity + scene.initial.spin.cross(arm)).transpose();
+    }
   }
 
   bool advance(double t1, int halvings, int& iterations) {
@@ -106,12 +150,15 @@ struct Run {
     return advance(0.5 * (t0 + t1), halvings + 1, iterations) && advance(t1, halvings + 1, iterations);
   }
 
-  /// Has nothing gone anywhere since the last look? Speeds would not tell: lengths that may be off by the tolerance are
-  /// put right by jerks, for ever.
+  /// Has nothing gone anywhere since the last look? In the metric of masses speeds would not tell: lengths that may be
+  /// off by the tolerance are put right by jerks, for ever.
   bool is_resting() {
     if (!path || state.time < loaded || state.time < next_look) return false;
-    const bool still =
-        before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < kDrift * scene.ribbon.length;
+    const bool implicit = options.metric == shell::Metric::implicit;
+    const double drift = (implicit ? kCreep : kDrift) * scene.ribbon.length;
+    const bool slow =
+        !implicit || shell::kinetic_energy(shell, state.v) <= kJerk * shell::bending_energy(shell, state.x);
+    const bool still = slow && before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < drift;
     before = state.x;
     next_look = state.time + 0.25 * factor;
     return still;
@@ -134,6 +181,18 @@ struct Run {
     if (path && !rests) failure = "not at rest after compare.settle_time";
     return failure.empty();
   }
+
+  double missed_share() const { return tried > 0 ? static_cast<double>(missed) / static_cast<double>(tried) : 0; }
+
+  /// A state whose lengths are off is none of an inextensible strip.
+  void judge_lengths() {
+    if (!failure.empty()) return;
+    const double off = shell::length_error(shell, state.x);
+    if (off > kMaxOff * options.length_tolerance)
+      failure = fmt::format("lengths are off by {:.2g} % at the end", 100 * off);
+    if (missed_share() > kMaxMissed)
+      failure = fmt::format("lengths stayed off in {:.0f} % of the steps", 100 * missed_share());
+  }
 };
 
 }  // namespace
@@ -147,14 +206,17 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   result.unknowns = shell::degrees_of_freedom(run.shell);
   result.constraints = shell::constraint_count(run.shell);
   if (run.failure.empty()) run.start();
-  if (run.failure.empty()) result.converged = run.go();
+  if (run.failure.empty()) run.go();
+  run.judge_lengths();
   if (result.failure.empty()) result.failure = run.failure;
+  result.converged = result.failure.empty();
   if (run.missed > 0) {
     result.notes.push_back(
         fmt::format("in {:.1f} % of the steps lengths stayed off by more than {:g} %, at most by {:.2g} %",
-                    100.0 * static_cast<double>(run.missed) / static_cast<double>(run.tried),
-                    100 * scene.compare.length_tolerance, 100 * run.worst));
+                    100 * run.missed_share(), 100 * scene.compare.length_tolerance, 100 * run.worst));
   }
+  if (run.path && !scene.compare.implicit_metric)
+    result.notes.push_back("at rest in the metric of masses, which is no equilibrium and depends on the time step");
   if (result.frames.empty()) {
     run.state = shell::straight_state(run.shell, run.surroundings);
     run.log.frame(0, shell::surface_mesh(run.shell, run.state.x));
@@ -163,6 +225,8 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   result.energy.normalized =
       result.energy.elastic * scene.ribbon.length / (scene.ribbon.bending_stiffness * scene.ribbon.width);
   result.energy.kinetic = shell::kinetic_energy(run.shell, run.state.v);
+  result.length_error = shell::length_error(run.shell, run.state.x);
+  result.missed_steps = run.missed_share();
   result.isometry = geometry::isometry_errors(grid_of(run.shell, run.state.x));
   result.moved_seconds = run.state.time;
   return run.log.finished();

@@ -81,6 +81,7 @@ struct CompareOptions {
   double poisson_ratio = 0.3;
   Shell conforming, nonconforming;
   double length_tolerance = 0.01;  ///< of shells, relative
+  bool implicit_metric = false;    ///< of shells: of M + h^2 K, else of their masses
   double time_step = 0;            ///< of the rod [s]
   double load_time = 0;            ///< of a unit of the load parameter, for models that move to an equilibrium [s]
   double settle_time = 0;          ///< and at most until they are at rest [s]

@@ -30,8 +30,10 @@ std::array<std::vector<std::vector<int>>, 3> rows_of_unknowns(const std::vector<
 
 /// How a row sees the unknown: +1, -1, or 0 where it moves both of its points alike.
 double sign_of(const Length& row, const Hold& hold, std::size_t axis, int unknown) {
-  return (unknown_of(hold, axis, row.points[1]) == unknown ? 1.0 : 0.0) -
-         (unknown_of(hold, axis, row.points[0]) == unknown ? 1.0 : 0.0);
+  const auto of = [&](int point) {
+    return unknown_of(hold, axis, point) == unknown ? hold.sign[static_cast<std::size_t>(point)] : 0.0;
+  };
+  return of(row.points[1]) - of(row.points[0]);
 }
 
 /// Adds the products of all pairs of rows that share an unknown; `value` is filled in later.
@@ -81,13 +83,18 @@ void assemble(LengthSystem& system) {
 
 }  // namespace
 
+bool can_move(const Length& row, const Hold& hold) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int from = unknown_of(hold, a, row.points[0]), to = unknown_of(hold, a, row.points[1]);
+    if (from != to || (from >= 0 && sign_of(row, hold, a, from) != 0)) return true;
+  }
+  return false;
+}
+
 LengthSystem make_length_system(const std::vector<Length>& set, const Hold& hold) {
   LengthSystem system;
   for (const Length& row : set) {
-    bool moves = false;
-    for (std::size_t a = 0; a < 3; ++a)
-      moves |= unknown_of(hold, a, row.points[0]) != unknown_of(hold, a, row.points[1]);
-    if (moves) system.rows.push_back(row);
+    if (can_move(row, hold)) system.rows.push_back(row);
   }
   add_products(system, hold);
   const auto count = static_cast<Eigen::Index>(system.rows.size());
@@ -136,10 +143,11 @@ bool project_lengths(LengthSystem& system, const Hold& hold, Points& x) {
     for (std::size_t r = 0; r < system.rows.size(); ++r) {
       const auto i = static_cast<Eigen::Index>(r);
       const double pull = lambda[i] * system.direction(i, column);
-      const int from = unknown_of(hold, a, system.rows[r].points[0]),
-                to = unknown_of(hold, a, system.rows[r].points[1]);
-      if (from >= 0) change[from] += pull / hold.mass[a][static_cast<std::size_t>(from)];
-      if (to >= 0) change[to] -= pull / hold.mass[a][static_cast<std::size_t>(to)];
+      for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+        const int p = system.rows[r].points[side], k = unknown_of(hold, a, p);
+        const double signed_pull = (side == 0 ? pull : -pull) * hold.sign[static_cast<std::size_t>(p)];
+        if (k >= 0) change[k] += signed_pull / hold.mass[a][static_cast<std::size_t>(k)];
+      }
     }
     add_change(hold, a, change, x);
   }

@@ -29,6 +29,9 @@ struct LengthSystem {
   Eigen::VectorXd residual;
 };
 
+/// False where supports prescribe the length or move both points alike.
+bool can_move(const Length& row, const Hold& hold);
+
 LengthSystem make_length_system(const std::vector<Length>& set, const Hold& hold);
 
 /// Linear rows (`Shell::boundary`), factored once an axis.

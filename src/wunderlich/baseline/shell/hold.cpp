@@ -34,10 +34,19 @@ std::vector<int> nearest_to(const Shell& shell, Vec2 weight, Vec2 center) {
   return points_where(shell, [&](const Vec2& at) { return distance(at) < nearest + slack; });
 }
 
+/// The point that a pin holds, or the two that have it in their middle: of all nearest ones, the farthest apart.
+std::vector<int> pinned_points(const Shell& shell, int node) {
+  const std::vector<int> nearest = nearest_to(shell, Vec2::Ones(), {node_u(shell, node), 0});
+  if (nearest.size() < 2) return nearest;
+  const auto gap = [&](int p) {
+    return (shell.flat[static_cast<std::size_t>(p)] - shell.flat[static_cast<std::size_t>(nearest[0])]).norm();
+  };
+  return {nearest[0], *std::max_element(nearest.begin(), nearest.end(), [&](int p, int q) { return gap(p) < gap(q); })};
+}
+
 std::vector<int> held_points(const Shell& shell, const Support& support) {
   const double slack = 1e-6 * shell.mesh.cell_length;
-  if (support.orientation == Orientation::free)
-    return nearest_to(shell, Vec2::Ones(), {node_u(shell, support.node), 0});
+  if (support.orientation == Orientation::free) return pinned_points(shell, support.node);
   if (support.segment < 0 && support.node == 0) {
     return points_where(shell, [&](const Vec2& at) { return at.x() < slack; });
   }
@@ -50,6 +59,10 @@ std::vector<int> held_points(const Shell& shell, const Support& support) {
 }
 
 bool moves_as_one(const Support& support) { return support.orientation == Orientation::full; }
+
+bool is_pair(const Support& support, const std::vector<int>& points) {
+  return support.orientation == Orientation::free && points.size() == 2;
+}
 
 /// Gives the coordinates that no support owns unknowns of their own.
 void number_free(Hold& hold) {
@@ -102,12 +115,15 @@ Hold make_hold(const Shell& shell, const constraint::Surroundings& surroundings,
   const auto count = static_cast<std::size_t>(shell.point_count());
   Hold hold;
   for (auto& axis : hold.unknown) axis.assign(count, -2);
+  hold.sign.assign(count, 1);
   for (const Support& support : surroundings.supports) {
     if (!in_force(support, time)) continue;
     const std::vector<int> points = held_points(shell, support);
+    if (is_pair(support, points)) hold.sign[static_cast<std::size_t>(points[1])] = -1;
     for (std::size_t a = 0; a < 3; ++a) {
       if (!support.hold_position[a] && !moves_as_one(support)) continue;
-      const int index = support.hold_position[a] ? -1 : hold.unknown_count[a]++;
+      const bool alone = support.hold_position[a] && !is_pair(support, points);
+      const int index = alone ? -1 : hold.unknown_count[a]++;
       for (const int p : points) hold.unknown[a][static_cast<std::size_t>(p)] = index;
     }
   }
@@ -142,7 +158,7 @@ void set_offset(const Shell& shell, const constraint::Surroundings& surroundings
 Sparse selection(const Hold& hold, std::size_t axis) {
   std::vector<Eigen::Triplet<double>> triplets;
   for (std::size_t p = 0; p < hold.unknown[axis].size(); ++p) {
-    if (hold.unknown[axis][p] >= 0) triplets.emplace_back(static_cast<int>(p), hold.unknown[axis][p], 1.0);
+    if (hold.unknown[axis][p] >= 0) triplets.emplace_back(static_cast<int>(p), hold.unknown[axis][p], hold.sign[p]);
   }
   Sparse matrix(static_cast<Eigen::Index>(hold.unknown[axis].size()), hold.unknown_count[axis]);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
@@ -152,7 +168,7 @@ Sparse selection(const Hold& hold, std::size_t axis) {
 void add_change(const Hold& hold, std::size_t axis, const Eigen::VectorXd& change, Points& x) {
   for (std::size_t p = 0; p < hold.unknown[axis].size(); ++p) {
     const int k = hold.unknown[axis][p];
-    if (k >= 0) x(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(axis)) += change[k];
+    if (k >= 0) x(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(axis)) += hold.sign[p] * change[k];
   }
 }
 

@@ -11,11 +11,13 @@
 
 namespace wunderlich::baseline::shell {
 
-/// Coordinate a of point p is q_a[unknown[a][p]] + offset(p, a), or offset(p, a) alone where `unknown` is -1. The
-/// points of a clamp that may slide along an axis share one unknown there.
+/// Coordinate a of point p is sign[p] q_a[unknown[a][p]] + offset(p, a), or offset(p, a) alone where `unknown` is -1.
+/// The points of a clamp that may slide along an axis share one unknown there. So do two points between which a pin
+/// stands, one with the sign -1: the pin holds their mean and they turn about it.
 struct Hold {
   std::array<std::vector<int>, 3> unknown;
   std::array<int, 3> unknown_count{};
+  std::vector<double> sign;                 ///< of the points
   std::array<std::vector<double>, 3> mass;  ///< of the unknowns [kg]
 
   bool operator==(const Hold&) const = default;
@@ -25,8 +27,8 @@ struct Hold {
 std::string unsupported(const geometry::RibbonSpec& strip, const constraint::Surroundings& surroundings);
 
 /// The clamps and pins in force in a step that starts at `time`. A clamp holds the points at and beyond its node if
-/// that is an end of the strip, else the columns beside its segment; a pin the points nearest to the centerline at its
-/// node.
+/// that is an end of the strip, else the columns beside its segment; a pin the point nearest to the centerline at its
+/// node, or the mean of two.
 Hold make_hold(const Shell& shell, const constraint::Surroundings& surroundings, double time);
 
 /// `offset` at `time` by the supports in force at `start`.

@@ -48,37 +48,6 @@ Mesh surface_mesh(const Shell& shell, const Points& x) {
   return mesh;
 }
 
-double area_error(const Shell& shell, const Points& x) {
-  const Points vertices = drawn_vertices(shell, x);
-  double area = 0;
-  for (std::size_t t = 0; t < shell.mesh.triangles.size(); ++t) {
-    if (shell.mesh.ghost[t]) continue;
-    const auto& corner = shell.mesh.triangles[t];
-    area += (at(vertices, corner[1]) - at(vertices, corner[0]))
-                .cross(at(vertices, corner[2]) - at(vertices, corner[0]))
-                .norm() /
-            2;
-  }
-  return std::abs(area / (shell.strip.length * shell.strip.width) - 1);
-}
-
-double diagonal_strain(const Shell& shell, const Points& x) {
-  const Points vertices = drawn_vertices(shell, x);
-  const StripMesh& mesh = shell.mesh;
-  const double rest = std::hypot(mesh.cell_length, mesh.cell_width);
-  double strain = 0;
-  for (int i = mesh.ghosts[0]; i + 1 < mesh.columns - mesh.ghosts[1]; ++i) {
-    for (int j = 0; j + 1 < mesh.across; ++j) {
-      for (const int rise : {0, 1}) {
-        const double length =
-            (at(vertices, mesh.vertex(i + 1, j + rise)) - at(vertices, mesh.vertex(i, j + 1 - rise))).norm();
-        strain = std::max(strain, std::abs(length / rest - 1));
-      }
-    }
-  }
-  return strain;
-}
-
 double length_error(const Shell& shell, const Points& x) {
   double error = 0;
   for (const auto& set : shell.lengths) error = std::max(error, max_length_error(set, x));

@@ -13,12 +13,6 @@ Points drawn_vertices(const Shell& shell, const Points& x);
 /// The triangles of the strip without ghosts, with normals averaged at vertices.
 Mesh surface_mesh(const Shell& shell, const Points& x);
 
-/// |area - l w| / (l w) of the drawn surface.
-double area_error(const Shell& shell, const Points& x);
-
-/// Largest relative change of length among the diagonals of the drawn cells, both of each.
-double diagonal_strain(const Shell& shell, const Points& x);
-
 /// Largest relative error of a length that is a constraint.
 double length_error(const Shell& shell, const Points& x);
 

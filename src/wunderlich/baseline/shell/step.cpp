@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wunderlich/baseline/shell/collide.hpp"
+#include "wunderlich/baseline/shell/measure.hpp"
 
 namespace wunderlich::baseline::shell {
 
@@ -31,18 +32,21 @@ Sparse implicit_matrix(const Shell& shell, const Hold& hold, const Sparse& to_un
   return mass + h * h * matrix;
 }
 
-void prepare(const Shell& shell, const constraint::Surroundings& surroundings, double t0, double h, Work& work) {
+void prepare(const Shell& shell, const constraint::Surroundings& surroundings, Metric metric, double t0, double h,
+             Work& work) {
   Hold hold = make_hold(shell, surroundings, t0);
-  const bool same_hold = hold == work.hold && !work.lengths.empty();
+  const bool same_hold = hold == work.hold && !work.lengths.empty() && metric == work.metric;
   if (same_hold && std::abs(h - work.step) < 1e-9 * h) return;
   work.step = h;
+  work.metric = metric;
+  std::array<Sparse, 3> implicit;
   for (std::size_t a = 0; a < 3; ++a) {
     work.to_unknowns[a] = selection(hold, a).transpose();
+    implicit[a] = implicit_matrix(shell, hold, work.to_unknowns[a], a, h);
     work.factor_of[a] = a > 0 && hold.unknown[a] == hold.unknown[0] ? 0 : a;
-    if (work.factor_of[a] == a) {
-      work.factor[a] = std::make_unique<Factor>(implicit_matrix(shell, hold, work.to_unknowns[a], a, h));
-    }
+    if (metric == Metric::mass && work.factor_of[a] == a) work.factor[a] = std::make_unique<Factor>(implicit[a]);
   }
+  if (metric == Metric::implicit) work.implicit = make_implicit_system(shell, hold, implicit);
   if (same_hold) return;
   work.lengths.clear();
   for (const auto& set : shell.lengths) work.lengths.push_back(make_length_system(set, hold));
@@ -64,12 +68,6 @@ void predict(const Shell& shell, double h, double damping, Work& work, State& st
     const Eigen::VectorXd reduced = work.to_unknowns[a] * right.col(static_cast<Eigen::Index>(a));
     add_change(work.hold, a, work.factor[work.factor_of[a]]->solve(reduced), state.x);
   }
-}
-
-double length_error(const Shell& shell, const Points& x) {
-  double error = 0;
-  for (const auto& set : shell.lengths) error = std::max(error, max_length_error(set, x));
-  return error;
 }
 
 double boundary_error(const Shell& shell, const Points& x) {
@@ -97,6 +95,30 @@ bool enforce(const Shell& shell, const Options& options, Work& work, Points& x, 
   return false;
 }
 
+/// The other metric: the first round has the forces and inertia in it, those that follow put lengths right.
+bool move_as_one(const Shell& shell, double h, const Options& options, Work& work, State& state, StepReport& report) {
+  const double kept = h / (1 + options.damping * h);
+  Points x = work.offset;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const Eigen::Map<const Eigen::VectorXd> mass(shell.mass.data(), shell.point_count());
+    Eigen::VectorXd unknowns = work.to_unknowns[a] * mass.cwiseProduct(state.x.col(axis) - work.offset.col(axis));
+    for (Eigen::Index k = 0; k < unknowns.size(); ++k) unknowns[k] /= work.hold.mass[a][static_cast<std::size_t>(k)];
+    add_change(work.hold, a, unknowns, x);
+  }
+  Points push = h * h * (work.force - shell.bending * x);
+  for (Eigen::Index p = 0; p < push.rows(); ++p)
+    push.row(p) += shell.mass[static_cast<std::size_t>(p)] * kept * state.v.row(p);
+  state.x = std::move(x);
+  do {
+    if (!move_implicitly(work.implicit, shell, work.hold, push, state.x)) return false;
+    push.setZero();
+    ++report.iterations;
+    if (std::max(length_error(shell, state.x), boundary_error(shell, state.x)) < options.length_tolerance) return true;
+  } while (report.iterations < options.max_iterations);
+  return false;
+}
+
 }  // namespace
 
 StepReport step(const Shell& shell, const constraint::Surroundings& surroundings, const Options& options, double t1,
@@ -104,17 +126,22 @@ StepReport step(const Shell& shell, const constraint::Surroundings& surroundings
   StepReport report;
   Lap lap;
   const double h = t1 - state.time;
-  prepare(shell, surroundings, state.time, h, work);
+  prepare(shell, surroundings, options.metric, state.time, h, work);
   set_offset(shell, surroundings, state.time, t1, work.offset);
   work.force.setZero(shell.point_count(), 3);
   add_loads(shell, surroundings, state.x, t1, work.force);
   report.other_seconds += lap();
 
   State trial = state;
-  predict(shell, h, options.damping, work, trial);
-  report.sol_seconds = lap();
-  report.converged = enforce(shell, options, work, trial.x, report);
-  lap();
+  if (options.metric == Metric::implicit) {
+    report.converged = move_as_one(shell, h, options, work, trial, report);
+    report.length_seconds = lap();
+  } else {
+    predict(shell, h, options.damping, work, trial);
+    report.sol_seconds = lap();
+    report.converged = enforce(shell, options, work, trial.x, report);
+    lap();
+  }
   report.touching = push_out(shell, surroundings, work.hold, state, t1, trial.x);
   trial.v = (trial.x - state.x) / h;
   trial.time = t1;

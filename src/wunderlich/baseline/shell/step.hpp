@@ -7,12 +7,20 @@
 
 #include "wunderlich/baseline/shell/fast_projection.hpp"
 #include "wunderlich/baseline/shell/hold.hpp"
+#include "wunderlich/baseline/shell/implicit_projection.hpp"
 #include "wunderlich/baseline/shell/shell.hpp"
 #include "wunderlich/constraint/support.hpp"
 
 namespace wunderlich::baseline::shell {
 
+/// In what measure the constraints move the points least.
+enum class Metric {
+  mass,      ///< the authors': bending first, then lengths. Its rest is biased, the more the larger h^2 K/M
+  implicit,  ///< of M + h^2 K, bending and constraints in one: its rest is an equilibrium, whatever the step
+};
+
 struct Options {
+  Metric metric = Metric::mass;
   double length_tolerance = 0.01;  ///< on the relative error of a length, and of the gaps of a nonconforming boundary
   int max_iterations = 200;        ///< of fast projection
   double damping = 0;              ///< rate at which velocities decay [1/s]
@@ -35,6 +43,8 @@ struct Work {
   std::array<Sparse, 3> to_unknowns;  ///< transposed selections
   std::vector<LengthSystem> lengths;
   BoundarySystem boundary;
+  Metric metric = Metric::mass;  ///< that of the last step
+  ImplicitSystem implicit;       ///< with that metric alone
   Points offset, force, start;
 };
 
