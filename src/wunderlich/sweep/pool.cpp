@@ -1,0 +1,193 @@
+#include "wunderlich/sweep/pool.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+namespace wunderlich::sweep {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// All of it, or false at the end of the stream.
+bool read_all(int file, void* to, std::size_t size) {
+  auto* at = static_cast<char*>(to);
+  while (size > 0) {
+    const ssize_t got = ::read(file, at, size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    at += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+bool write_all(int file, const void* from, std::size_t size) {
+  const auto* at = static_cast<const char*>(from);
+  while (size > 0) {
+    const ssize_t put = ::send(file, at, size, MSG_NOSIGNAL);
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) return false;
+    at += put;
+    size -= static_cast<std::size_t>(put);
+  }
+  return true;
+}
+
+[[noreturn]] void serve(int channel, pid_t parent, const std::function<std::string(std::size_t)>& work) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);  // it was gone before that took effect
+  ::signal(SIGINT, SIG_IGN);              // Ctrl-C reaches the whole group; the parent decides
+  for (std::uint64_t item = 0; read_all(channel, &item, sizeof item);) {
+    const std::string result = work(static_cast<std::size_t>(item));
+    const std::uint64_t size = result.size();
+    if (!write_all(channel, &size, sizeof size) || !write_all(channel, result.data(), result.size())) break;
+  }
+  ::_exit(0);  // no destructors: what they would flush belongs to the parent
+}
+
+struct Worker {
+  pid_t process = -1;
+  int channel = -1;
+  long item = -1;  ///< under way
+  Clock::time_point deadline;
+};
+
+Worker start_worker(const std::vector<Worker>& others, const std::function<std::string(std::size_t)>& work) {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) throw std::runtime_error("no process can be started: socketpair");
+  const pid_t parent = ::getpid(), process = ::fork();
+  if (process < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
+  if (process == 0) {
+    ::close(ends[0]);
+    for (const Worker& other : others) {
+      if (other.channel >= 0) ::close(other.channel);
+    }
+    serve(ends[1], parent, work);
+  }
+  ::close(ends[1]);
+  return {process, ends[0], -1, {}};
+}
+
+void end(Worker& worker, bool kill) {
+  if (worker.process < 0) return;
+  if (kill) ::kill(worker.process, SIGKILL);
+  ::close(worker.channel);
+  ::waitpid(worker.process, nullptr, 0);
+  worker = {};
+}
+
+/// Why a worker that answers no more has ended.
+std::string last_words(Worker& worker) {
+  int status = 0;
+  ::close(worker.channel);
+  ::waitpid(worker.process, &status, 0);
+  worker.process = -1, worker.channel = -1;
+  if (WIFSIGNALED(status)) {
+    return fmt::format("killed by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  }
+  return fmt::format("ended with code {}", WEXITSTATUS(status));
+}
+
+class Pool {
+ public:
+  Pool(const PoolOptions& options, const std::function<std::string(std::size_t)>& work)
+      : options_(options), work_(work), workers_(static_cast<std::size_t>(std::max(1, options.workers))) {}
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+  ~Pool() {
+    for (Worker& worker : workers_) end(worker, worker.item >= 0);
+  }
+
+  void go(const std::function<long()>& next, const std::function<void(const Done&)>& done,
+          const std::function<bool()>& goes_on) {
+    for (Worker& worker : workers_) give(worker, next);
+    while (busy() && goes_on()) {
+      wait();
+      for (std::size_t i = 0; i < workers_.size(); ++i) {
+        Done result;
+        if (!take(workers_[i], ready_[i], result)) continue;
+        done(result);
+        give(workers_[i], next);
+      }
+    }
+  }
+
+ private:
+  bool busy() const {
+    return std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) { return w.item >= 0; });
+  }
+
+  void give(Worker& worker, const std::function<long()>& next) {
+    const long item = next();
+    if (item < 0) return;
+    if (worker.process < 0) worker = start_worker(workers_, work_);
+    const auto number = static_cast<std::uint64_t>(item);
+    worker.item = item;
+    worker.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                         std::chrono::duration<double>(options_.timeout > 0 ? options_.timeout : 1e9));
+    write_all(worker.channel, &number, sizeof number);  // if it is gone, reading will show it
+  }
+
+  /// Until a worker answers, or one is late.
+  void wait() {
+    std::vector<pollfd> files;
+    Clock::time_point first = Clock::now() + std::chrono::milliseconds(200);
+    for (const Worker& worker : workers_) {
+      files.push_back({worker.item >= 0 ? worker.channel : -1, POLLIN, 0});
+      if (worker.item >= 0) first = std::min(first, worker.deadline);
+    }
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(first - Clock::now()).count();
+    ::poll(files.data(), files.size(), static_cast<int>(std::max<long>(0, left + 1)));
+    ready_.assign(workers_.size(), false);
+    for (std::size_t i = 0; i < files.size(); ++i) ready_[i] = files[i].fd >= 0 && files[i].revents != 0;
+  }
+
+  bool take(Worker& worker, bool ready, Done& result) {
+    if (worker.item < 0) return false;
+    result.item = static_cast<std::size_t>(worker.item);
+    if (!ready) {
+      if (Clock::now() < worker.deadline) return false;
+      end(worker, true);
+      result.timed_out = true;
+      result.failure = fmt::format("took longer than {:g} s", options_.timeout);
+      return true;
+    }
+    std::uint64_t size = 0;
+    bool whole = read_all(worker.channel, &size, sizeof size);
+    if (whole) {
+      result.result.resize(size);
+      whole = read_all(worker.channel, result.result.data(), size);
+    }
+    worker.item = -1;
+    if (!whole) result.failure = last_words(worker);
+    return true;
+  }
+
+  PoolOptions options_;
+  const std::function<std::string(std::size_t)>& work_;
+  std::vector<Worker> workers_;
+  std::vector<bool> ready_;
+};
+
+}  // namespace
+
+void run_pool(const PoolOptions& options, const std::function<long()>& next,
+              const std::function<std::string(std::size_t)>& work, const std::function<void(const Done&)>& done, const std::function<bool()>& goes_on) {
+  Pool(options, work).go(next, done, goes_on);
+}
+
+}  // namespace wunderlich::sweep
