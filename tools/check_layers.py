@@ -21,11 +21,13 @@ LAYERS = {
     "solver": ["base", "math", "geometry", "energy", "contact", "constraint"],
     "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver"],
     "io": ["base"],
+    "sweep": ["base", "geometry", "scene", "io"],
 }
 CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver"]
 # layer -> prefixes of third-party headers it may include; what has no slash and no dot is the standard library
 THIRD_PARTY = {layer: ["Eigen/"] for layer in CORE}
 THIRD_PARTY["scene"] = ["Eigen/", "yaml-cpp/", "fmt/"]
+THIRD_PARTY["sweep"] = ["nlohmann/", "fmt/", "fcntl.h", "poll.h", "sys/", "unistd.h"]  # processes, locks
 THIRD_PARTY["io"] = ["Eigen/", "nlohmann/", "fmt/", "fcntl.h", "unistd.h"]  # POSIX: files that survive a power cut
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
