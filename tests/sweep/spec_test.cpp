@@ -53,11 +53,11 @@ TEST(Sweep, ZippedColumnsGoTogether) {
   const Sweep sweep = read(
       "  - zip:\n"
       "      - {name: w, key: ribbon.width, values: [0.1, 0.2]}\n"
-      "      - {keys: [ribbon.length, clamps.0.position.0], values: [1, 2]}\n");
+      "      - {keys: [ribbon.length, ribbon.area_density], values: [1, 2]}\n");
   ASSERT_EQ(run_count(sweep), 2u);
   EXPECT_EQ(sweep.axes[0].columns, (std::vector<std::string>{"w", "ribbon.length"}));
   EXPECT_EQ(assignments_of(sweep, 1),
-            (std::vector<std::string>{"ribbon.width=0.2", "ribbon.length=2", "clamps.0.position.0=2"}));
+            (std::vector<std::string>{"ribbon.width=0.2", "ribbon.length=2", "ribbon.area_density=2"}));
 }
 
 TEST(Sweep, ALatinHypercubeHasOneSampleInEveryPart) {

@@ -13,6 +13,7 @@
 #include "wunderlich/scene/read.hpp"
 #include "wunderlich/scene/text.hpp"
 #include "wunderlich/sweep/axes.hpp"
+#include "wunderlich/sweep/figures.hpp"
 
 namespace wunderlich::sweep {
 
@@ -67,7 +68,14 @@ void read_collected(const Node& map, Sweep& sweep) {
   }
   for (std::size_t i = 0; i < map.value->items.size(); ++i) {
     const Node item{&map.value->items[i], map.path + "." + map.value->names[i], map.value->items[i].place};
-    sweep.collected.push_back({map.value->names[i], word(item)});
+    const std::string path = word(item);
+    if (!is_figure(path)) {
+      const std::string guess = scene::nearest(path, figure_names());
+      refuse(item, fmt::format("`{}` is no figure of a run{} There are: {}", scene::shown(path),
+                               guess.empty() ? "." : fmt::format("; did you mean `{}`?", guess),
+                               scene::joined(figure_names())));
+    }
+    sweep.collected.push_back({map.value->names[i], path});
   }
 }
 

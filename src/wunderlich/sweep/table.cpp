@@ -15,6 +15,7 @@
 #include "wunderlich/io/bytes.hpp"
 #include "wunderlich/io/file.hpp"
 #include "wunderlich/io/packed_mesh.hpp"
+#include "wunderlich/sweep/figures.hpp"
 
 namespace wunderlich::sweep {
 
@@ -25,36 +26,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// `energy.normalized`, `ends.1.force.0`, `kappa_zeros.count`, `shape.max_kappa`: in the summary, or at the top.
-const Json* at_path(const Json& body, const std::string& path) {
-  const Json* here = path.compare(0, 6, "shape.") == 0 ? &body : body.contains("summary") ? &body["summary"] : nullptr;
-  for (std::size_t begin = 0; here != nullptr && begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string part = path.substr(begin, end - begin);
-    begin = end + 1;
-    if (here->is_array() && !part.empty() && part.find_first_not_of("0123456789") == std::string::npos) {
-      const std::size_t index = std::stoul(part);
-      here = index < here->size() ? &(*here)[index] : nullptr;
-    } else {
-      here = here->is_object() && here->contains(part) ? &(*here)[part] : nullptr;
-    }
-  }
-  return here;
-}
-
-/// A figure of a run; NaN where it has none.
-double figure(const Json& body, const std::string& path) {
-  constexpr std::string_view count = ".count";
-  if (path.size() > count.size() && path.compare(path.size() - count.size(), count.size(), count) == 0) {
-    const Json* list = at_path(body, path.substr(0, path.size() - count.size()));
-    return list != nullptr && list->is_array() ? static_cast<double>(list->size()) : kNone;
-  }
-  const Json* value = at_path(body, path);
-  if (value == nullptr) return kNone;
-  if (value->is_boolean()) return value->get<bool>() ? 1 : 0;
-  return value->is_number() ? value->get<double>() : kNone;
-}
 
 bool is_timing(const Collected& result) { return result.path.compare(0, 7, "timing.") == 0; }
 

@@ -1,0 +1,156 @@
+"""wunderlich sweep: many runs, resumable, with one table at the end."""
+
+import csv
+import json
+import random
+import signal
+import struct
+import subprocess
+import time
+
+from program import PROGRAM, ProgramTest, main
+
+SWEEP = """\
+title: Heavier and heavier
+scene: strip.yaml
+axes:
+  - {name: width, key: ribbon.width, linear: {from: 0.05, to: 0.1, count: WIDTHS}}
+  - {name: weight, key: gravity, values: ["[0,0,-1]", "[0,0,-2]", "[0,0,-4]", "[0,0,-8]"]}
+collect:
+  energy: energy.normalized
+  largest_curvature: shape.max_kappa
+  clamp_force: ends.0.force.2
+  zeros: kappa_zeros.count
+  seconds: timing.wall_seconds
+fields: [kappa]
+timeout: 60
+"""
+TIMING = 2  # columns at the end that the clock decides
+
+
+class Sweep(ProgramTest):
+    def sweep(self, widths=5, extra=""):
+        return self.write("sweep.yaml", SWEEP.replace("WIDTHS", str(widths)) + extra)
+
+    def table(self, folder="there"):
+        with open(self.folder / folder / "table.csv", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def table_text(self, folder):
+        """The table without its timing columns."""
+        lines = (self.folder / folder / "table.csv").read_text().splitlines()
+        return [",".join(line.split(",")[:-TIMING]) for line in lines]
+
+    def test_runs_all_and_collects(self):
+        self.sweep()
+        result = self.expect(0, "sweep", "sweep.yaml", "--out", "there", "--jobs", "2")
+        self.assertIn("20 runs", result.stdout)
+        rows = self.table()
+        self.assertEqual(len(rows), 20)
+        self.assertEqual({row["status"] for row in rows}, {"done"})
+        self.assertEqual([row["run"] for row in rows], [str(i) for i in range(20)])
+        # The figures are those of the same run by itself.
+        one = rows[7]
+        self.expect(0, "run", "strip.yaml", "--set", f"ribbon.width={one['width']}", "--set", f"gravity={one['weight']}",
+                    "--out", "one", "--formats", "none", "--quiet")
+        summary = json.loads((self.folder / "one/summary.json").read_text())
+        self.assertEqual(float(one["energy"]), summary["energy"]["normalized"])
+        self.assertEqual(float(one["clamp_force"]), summary["ends"][0]["force"][2])
+        detail = json.loads((self.folder / f"there/runs/{one['key']}.json").read_text())
+        self.assertEqual(detail["summary"]["energy"], summary["energy"])
+        self.assertIn("--set", detail["command"])
+        page = (self.folder / "there/report.html").read_text()
+        self.assertIn(one["key"], page)
+
+    def test_fields_are_numpy_arrays(self):
+        self.sweep(2)
+        self.expect(0, "sweep", "sweep.yaml", "--out", "there", "--quiet")
+        content = (self.folder / "there/kappa.npy").read_bytes()
+        self.assertEqual(content[:8], b"\x93NUMPY\x01\x00")
+        length = struct.unpack("<H", content[8:10])[0]
+        self.assertEqual((10 + length) % 64, 0)
+        self.assertIn(b"'shape': (8, 13)", content[:10 + length])
+        values = struct.unpack("<104d", content[10 + length:])
+        self.assertAlmostEqual(max(abs(v) for v in values[:13]), float(self.table()[0]["largest_curvature"]), delta=1e-15)
+
+    def test_killed_anywhere_it_goes_on_and_ends_the_same(self):
+        self.sweep(40)
+        self.expect(0, "sweep", "sweep.yaml", "--out", "whole", "--quiet")
+        dice = random.Random(4)
+        for _ in range(8):
+            process = subprocess.Popen([PROGRAM, "sweep", "sweep.yaml", "--out", "cut", "--quiet"], cwd=self.folder)
+            time.sleep(dice.uniform(0.01, 0.1))
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        self.expect(0, "sweep", "sweep.yaml", "--out", "cut", "--quiet")
+        self.assertEqual(self.table_text("cut"), self.table_text("whole"))
+        self.assertEqual((self.folder / "cut/kappa.npy").read_bytes(), (self.folder / "whole/kappa.npy").read_bytes())
+        lines = (self.folder / "cut/results/all.log").read_text().splitlines()
+        keys = [json.loads(line[17:])["key"] for line in lines]
+        self.assertEqual(len(keys), len(set(keys)), "a run was done twice")
+
+    def test_shards_make_the_same_table(self):
+        self.sweep()
+        self.expect(0, "sweep", "sweep.yaml", "--out", "whole", "--quiet")
+        for shard in ("2/3", "1/3"):
+            self.expect(0, "sweep", "sweep.yaml", "--out", "parts", "--shard", shard, "--quiet")
+        self.assertIn("14 of 20", self.expect(0, "sweep", "status", "parts").stdout)
+        self.expect(0, "sweep", "collect", "parts")
+        self.assertEqual(sum(row["status"] == "" for row in self.table("parts")), 6)
+        self.expect(0, "sweep", "sweep.yaml", "--out", "parts", "--shard", "3/3", "--quiet")
+        self.expect(0, "sweep", "collect", "parts")
+        self.assertEqual(self.table_text("parts"), self.table_text("whole"))
+
+    def test_a_run_that_hangs_or_is_refused_is_recorded_and_the_rest_goes_on(self):
+        self.write("sweep.yaml", SWEEP.replace("WIDTHS", "1").replace("timeout: 60", "timeout: 0.5") +
+                   "set: {solver.steps: 0}\n".replace("0}", "1}"))
+        text = (self.folder / "sweep.yaml").read_text().replace(
+            'values: ["[0,0,-1]", "[0,0,-2]", "[0,0,-4]", "[0,0,-8]"]', 'values: ["[0,0,-1]", "[0,0,-2]"]')
+        text = text.replace("collect:", "  - {key: ribbon.segments, values: [12, 500000]}\ncollect:")
+        self.write("sweep.yaml", text)
+        self.expect(0, "sweep", "sweep.yaml", "--out", "there", "--quiet")
+        rows = self.table()
+        self.assertEqual([row["status"] for row in rows], ["done", "timed-out", "done", "timed-out"])
+        self.assertIn("0.5 s", rows[1]["reason"])
+        self.assertEqual(rows[1]["energy"], "")
+
+    def test_interrupted_it_says_so_and_can_go_on(self):
+        self.sweep(400)
+        process = subprocess.Popen([PROGRAM, "sweep", "sweep.yaml", "--out", "there"], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        _, error = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("the same command goes on", error)
+        self.expect(0, "sweep", "status", "there")
+
+    def test_the_slurm_script_is_plain(self):
+        self.sweep()
+        result = self.call("sweep", "sweep.yaml", "--out", "there", "--engine", "slurm", "--shards", "4", "--walltime",
+                           "1:00:00", "--partition", "short", "--jobs", "2", "--sbatch=--mem=1G")
+        script = (self.folder / "there/slurm/job.sh").read_text()
+        for line in ("--array=1-4", "--time=1:00:00", "--partition=short", "--cpus-per-task=2", "--requeue", "--mem=1G"):
+            self.assertIn(f"#SBATCH {line}", script)
+        self.assertIn('--shard "$SLURM_ARRAY_TASK_ID/4"', script)
+        if result.returncode == 2:  # as everywhere without Slurm
+            self.assertIn("sbatch", result.stderr)
+
+    def test_bad_input(self):
+        self.sweep()
+        self.expect_refused("sweep", "nowhere.yaml", says="nowhere.yaml")
+        self.expect_refused("sweep", says="sweep")
+        self.expect_refused("sweep", "strip.yaml", "--out", "there", says=["strip.yaml", "did you mean"])
+        for shard in ("0/3", "4/3", "x", "1/3x"):
+            self.expect_refused("sweep", "sweep.yaml", "--shard", shard, says="--shard")
+        self.expect_refused("sweep", "sweep.yaml", "--engine", "cloud", says="local or slurm")
+        self.expect_refused("sweep", "status", "nowhere", says="nowhere")
+        (self.folder / "full").mkdir()
+        self.write("full/mine.txt", "mine")
+        self.expect_refused("sweep", "sweep.yaml", "--out", "full", says="full")
+        self.write("bad.yaml", SWEEP.replace("WIDTHS", "3").replace("energy.normalized", "energy.normalised"))
+        self.expect_refused("sweep", "bad.yaml", "--out", "there", says=["bad.yaml:7", "energy.normalized"])
+
+
+if __name__ == "__main__":
+    main()
