@@ -53,5 +53,14 @@ struct SweepArguments {
 int sweep_command(const SweepArguments& arguments);
 int sweep_status_command(const std::string& folder);
 int sweep_collect_command(const std::string& folder);
+struct CompareArguments {
+  std::string scene;
+  std::string models = "ribbon,rod,shell-conforming,shell-nonconforming";
+  std::string out;  ///< empty: out/<scene>-compare
+  std::vector<std::string> set;
+  bool quiet = false;
+};
+
+int compare_command(const CompareArguments& arguments);
 
 }  // namespace wunderlich::app

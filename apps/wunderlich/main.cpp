@@ -89,6 +89,18 @@ void add_sweep(CLI::App& program, SweepArguments& arguments, std::string& folder
                 : status->parsed()    ? sweep_status_command(folder)
                                       : sweep_collect_command(folder);
   });
+void add_compare(CLI::App& program, CompareArguments& arguments, int& exit_code) {
+  CLI::App* command = program.add_subcommand("compare", "Run a scene by other models as well, side by side");
+  command->add_option("scene", arguments.scene, "A scene file, or the name of a shipped scene")
+      ->required()
+      ->type_name("SCENE");
+  command->add_option("--models", arguments.models, "Some of ribbon,rod,shell-conforming,shell-nonconforming; default all")
+      ->type_name("LIST");
+  command->add_option("--out", arguments.out, "The folder; default out/<scene>-compare. A comparison there is replaced")
+      ->type_name("DIR");
+  add_set(*command, arguments.set);
+  command->add_flag("--quiet", arguments.quiet, "Say nothing but errors");
+  command->callback([&] { exit_code = compare_command(arguments); });
 }
 
 int report(int code, const std::string& message) {
@@ -106,11 +118,13 @@ int run_program(int argc, char** argv) {
   ExportArguments exported;
   SweepArguments swept;
   std::string sweep_folder;
+  CompareArguments compared;
   add_run(program, run, exit_code);
   add_check(program, check, exit_code);
   program.add_subcommand("scenes", "List the shipped scenes")->callback([&] { exit_code = scenes_command(); });
   add_export(program, exported, exit_code);
   add_sweep(program, swept, sweep_folder, exit_code);
+  add_compare(program, compared, exit_code);
   CLI::App* schema = program.add_subcommand("schema", "Print the scene format as Markdown");
   schema->callback([&] { exit_code = schema_command(); })->group("");
   try {

@@ -1,4 +1,4 @@
-// Bundles src/ into one HTML page and writes it as report.html and as a C++ string.
+// Bundles src/ into three HTML pages, of a run, of a comparison and of a sweep, and writes them as C++ strings; the first as report.html too.
 // usage: node build.mjs NODE_MODULES OUTPUT_FOLDER
 import { readFile, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
@@ -33,26 +33,39 @@ const place = (page, mark, text) => {
 };
 
 const licences = `<!-- Contains three.js (MIT, three.js authors) and uPlot (MIT, Leon Sorokin). -->\n`;
-let page = await readFile(path.join(here, 'src', 'page.html'), 'utf8');
-page = place(page, '/* style */', await bundle('style.css'));
-page = place(page, '/* script */', await bundle('main.ts'));
-page = page.replace('<html', () => `${licences}<html`);
-if (/[\r\0]/.test(page)) throw new Error('the page holds characters that a C++ string would change');
+
+async function build(html, script) {
+  let page = await readFile(path.join(here, 'src', html), 'utf8');
+  page = place(page, '/* style */', await bundle('style.css'));
+  page = place(page, '/* script */', await bundle(script));
+  page = page.replace('<html', () => `${licences}<html`);
+  if (/[\r\0]/.test(page)) throw new Error('the page holds characters that a C++ string would change');
+  return page;
+}
 
 // Raw literals in pieces that every compiler takes; none of them ends inside a character.
-const pieces = page.match(/[^]{1,12000}/gu).map((piece) => `R"~PAGE~(${piece})~PAGE~"`);
-if (page.includes(')~PAGE~"')) throw new Error('the page holds the delimiter of the string');
-const source = `#include "wunderlich/report/report_template.hpp"
-
-namespace wunderlich::report {
-
-std::string_view report_template() {
+function asFunction(name, page) {
+  const pieces = page.match(/[^]{1,12000}/gu).map((piece) => `R"~PAGE~(${piece})~PAGE~"`);
+  if (page.includes(')~PAGE~"')) throw new Error('the page holds the delimiter of the string');
+  return `std::string_view ${name}() {
   using namespace std::string_view_literals;
   return
 ${pieces.map((piece, index) => piece + (index === pieces.length - 1 ? 'sv' : '')).join('\n')};
 }
+`;
+}
 
+const report = await build('page.html', 'main.ts');
+const comparison = await build('compare.html', 'compare.ts');
+const sweep = await build('sweep.html', 'sweep.ts');
+const source = `#include "wunderlich/report/report_template.hpp"
+
+namespace wunderlich::report {
+
+${asFunction('report_template', report)}
+${asFunction('comparison_template', comparison)}
+${asFunction('sweep_template', sweep)}
 }  // namespace wunderlich::report
 `;
-await writeFile(path.join(output, 'report.html'), page);
+await writeFile(path.join(output, 'report.html'), report);
 await writeFile(path.join(output, 'report_template.cpp'), source);

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "wunderlich/io/bytes.hpp"
+#include "wunderlich/io/packed_body.hpp"
+#include "wunderlich/io/packed_mesh.hpp"
 #include "wunderlich/io/summary_json.hpp"
 
 namespace wunderlich::io {
@@ -15,20 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view placeholder = "\"__WUNDERLICH_DATA__\"";
-constexpr double largest_count = 65535;
 constexpr std::size_t byte_budget = 6u << 20;  // of the moving points, before base64
-
-/// The cube in which points are stored as 16-bit numbers.
-struct Cube {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
-  Vec3 high = Vec3::Constant(std::numeric_limits<double>::lowest());
-  double size() const { return std::max((high - low).maxCoeff(), std::numeric_limits<double>::min()); }
-  void include(const Vec3& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
 
 std::array<Vec3, 2> ruling_ends(const CenterlineSample& sample, const std::vector<FlatPattern>& strips) {
   const Vec3 half = 0.5 * strips[static_cast<std::size_t>(sample.ribbon)].width * (sample.d2 + sample.eta * sample.d3);
@@ -46,21 +35,6 @@ Cube bounding_cube(const std::vector<const Frame*>& frames, const std::vector<Fl
   return cube;
 }
 
-void append_point(std::string& out, const Cube& cube, const Vec3& p) {
-  for (int k = 0; k < 3; ++k) {
-    append(out, static_cast<std::uint16_t>(std::lround((p[k] - cube.low[k]) / cube.size() * largest_count)));
-  }
-}
-
-/// Octahedral map of a unit vector to two 16-bit numbers (Cigolle et al. 2014).
-void append_normal(std::string& out, const Vec3& n) {
-  Vec2 p = Vec2(n.x(), n.y()) / n.lpNorm<1>();
-  if (n.z() < 0) {
-    p = Vec2((1 - std::abs(p.y())) * std::copysign(1.0, p.x()), (1 - std::abs(p.x())) * std::copysign(1.0, p.y()));
-  }
-  for (int k = 0; k < 2; ++k) append(out, static_cast<std::int16_t>(std::lround(p[k] * 32767)));
-}
-
 template <class Get>
 std::string column(const std::vector<CenterlineSample>& centerline, Get get) {
   std::string out;
@@ -69,28 +43,18 @@ std::string column(const std::vector<CenterlineSample>& centerline, Get get) {
 }
 
 Json frame_json(const Frame& frame, const Cube& cube, const std::vector<FlatPattern>& strips) {
-  std::string points, normals, rulings;
-  for (const Vec3& p : frame.surface.points) append_point(points, cube, p);
-  for (const Vec3& n : frame.surface.normals) append_normal(normals, n);
+  std::vector<Vec3> rulings;
   for (const CenterlineSample& sample : frame.centerline) {
-    for (const Vec3& p : ruling_ends(sample, strips)) append_point(rulings, cube, p);
+    for (const Vec3& p : ruling_ends(sample, strips)) rulings.push_back(p);
   }
   const auto& line = frame.centerline;
   return {{"time", frame.time},
-          {"points", base64(points)},
-          {"normals", base64(normals)},
-          {"rulings", base64(rulings)},
+          {"points", packed_points(frame.surface.points, cube)},
+          {"normals", packed_normals(frame.surface.normals)},
+          {"rulings", packed_points(rulings, cube)},
           {"kappa", column(line, [](const CenterlineSample& s) { return s.kappa; })},
           {"tau", column(line, [](const CenterlineSample& s) { return s.tau; })},
           {"eta", column(line, [](const CenterlineSample& s) { return s.eta; })}};
-}
-
-std::string packed_triangles(const Mesh& mesh) {
-  std::string triangles;
-  for (const auto& triangle : mesh.triangles) {
-    for (const int point : triangle) append(triangles, static_cast<std::uint32_t>(point));
-  }
-  return base64(triangles);
 }
 
 /// Where each strip begins on the common axis: one behind the other.
@@ -116,23 +80,6 @@ Json mesh_json(const Mesh& mesh, const std::vector<double>& begin) {
     out[field.name] = base64(values);
   }
   return out;
-}
-
-/// A body in single precision; its poses x, y, z and quaternion x, y, z, w for each of the chosen frames.
-Json body_json(const Body& body, const std::vector<Frame>& frames, const std::vector<const Frame*>& chosen_frames) {
-  std::string points, normals, poses;
-  for (const Vec3& p : body.mesh.points) append_float3(points, p);
-  for (const Vec3& n : body.mesh.normals) append_float3(normals, n);
-  for (const Frame* frame : chosen_frames) {
-    const Pose& pose = body.poses[static_cast<std::size_t>(frame - frames.data())];
-    append_float3(poses, pose.position);
-    append_float3(poses, pose.frame.vec());
-    append(poses, static_cast<float>(pose.frame.w()));
-  }
-  return {{"points", base64(points)},
-          {"normals", base64(normals)},
-          {"triangles", packed_triangles(body.mesh)},
-          {"poses", base64(poses)}};
 }
 
 Json history_json(const std::vector<HistoryRow>& history) {
@@ -187,7 +134,11 @@ Json report_json(const RunOutput& output) {
   data["scale"] = cube.size() / largest_count;
   data["mesh"] = mesh_json(frames.front()->surface, begin);
   data["bodies"] = Json::array();
-  for (const Body& body : output.bodies) data["bodies"].push_back(body_json(body, output.frames, frames));
+  for (const Body& body : output.bodies) {
+    std::vector<Pose> poses;
+    for (const Frame* frame : frames) poses.push_back(body.poses[static_cast<std::size_t>(frame - output.frames.data())]);
+    data["bodies"].push_back(body_json(body.mesh, poses));
+  }
   data["u"] = column(frames.front()->centerline,
                      [&](const CenterlineSample& s) { return begin[static_cast<std::size_t>(s.ribbon)] + s.u; });
   data["frames"] = Json::array();
@@ -195,29 +146,12 @@ Json report_json(const RunOutput& output) {
   return data;
 }
 
-/// JSON that may stand in a script element: no text of the scene can end it.
-std::string script_safe(const std::string& json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string report_page(const RunOutput& output) {
   assert(!output.frames.empty());
-  const std::size_t position = output.report_template.find(placeholder);
-  assert(position != std::string_view::npos && "the report template has no place for the data");
-  std::string page(output.report_template.substr(0, position));
-  page += script_safe(report_json(output).dump(-1, ' ', false, Json::error_handler_t::replace));
-  page += output.report_template.substr(position + placeholder.size());
-  return page;
+  return filled_page(output.report_template,
+                     report_json(output).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace wunderlich::io

@@ -1,11 +1,9 @@
 #include "wunderlich/io/run_folder.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "wunderlich/base/error.hpp"
@@ -25,64 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const fs::path& folder, const std::string& problem) {
-  throw InputError(fmt::format("{}: {}", folder.string(), problem));
-}
-
-/// Without `..`, links and a slash at the end, so that renaming it means what it says.
-fs::path resolved(const fs::path& folder) {
-  std::error_code error;
-  fs::path out = fs::weakly_canonical(fs::absolute(folder, error), error);
-  if (error || folder.empty()) fail(folder, "cannot be used as an output folder: " + error.message());
-  return out.has_filename() ? out : out.parent_path();
-}
-
-/// A folder under construction, removed unless it was put in place.
-class Draft {
- public:
-  explicit Draft(fs::path path) : path_(std::move(path)) {
-    std::error_code error;
-    fs::create_directory(path_, error);
-    if (error) fail(path_.parent_path(), fmt::format("cannot be written: {}", error.message()));
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-  ~Draft() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-/// Swaps two folders in one step where the system can: then there is no moment without a run folder.
-bool exchange(const fs::path& a, const fs::path& b) {
-#ifdef RENAME_EXCHANGE
-  return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
-#else
-  (void)a, (void)b;
-  return false;
-#endif
-}
-
-/// Puts the draft at `folder`; what was there ends up in the draft's place or is removed.
-void put_in_place(const Draft& draft, const fs::path& folder) {
-  std::error_code error;
-  if (fs::exists(folder, error) && exchange(draft.path(), folder)) return;
-  const fs::path old = sibling(folder, "old");
-  const bool existed = fs::exists(folder, error);
-  if (existed) fs::rename(folder, old, error);
-  if (!error) fs::rename(draft.path(), folder, error);
-  if (error) {
-    const std::string reason = error.message();
-    if (existed && !fs::exists(folder, error)) fs::rename(old, folder, error);
-    fail(folder, "cannot be replaced: " + reason);
-  }
-  if (existed) fs::remove_all(old, error);
-}
-
 bool all_finite(const std::vector<Vec3>& vectors) {
   for (const Vec3& v : vectors) {
     if (!v.allFinite()) return false;
@@ -97,15 +37,6 @@ void require_finite(const RunOutput& output) {
       for (const double value : field.values) finite = finite && std::isfinite(value);
     }
     if (!finite) throw std::domain_error(fmt::format("the surface at time {} is not finite", frame.time));
-  }
-}
-
-void write_all(const fs::path& folder, const std::vector<RenderedFile>& files) {
-  for (const auto& [name, bytes] : files) {
-    std::error_code error;
-    if (name.has_parent_path()) fs::create_directories(folder / name.parent_path(), error);
-    if (error) fail(folder / name, "cannot be written: " + error.message());
-    write_in_place(folder / name, bytes);
   }
 }
 
@@ -141,21 +72,7 @@ bool is_run_folder(const fs::path& folder) {
   return fs::is_regular_file(folder / summary_file, error) && fs::is_regular_file(folder / checkpoint_file, error);
 }
 
-void require_writable(const fs::path& folder) {
-  const fs::path target = resolved(folder);
-  std::error_code error;
-  if (fs::exists(target, error)) {
-    if (!fs::is_directory(target, error)) fail(folder, "is a file; an output folder is needed");
-    const bool empty = fs::is_empty(target, error);
-    if (error) fail(folder, "cannot be read: " + error.message());
-    if (!empty && !is_run_folder(target)) {
-      fail(folder, "exists and was not written by wunderlich; only a run folder is replaced, choose another --out");
-    }
-  }
-  fs::create_directories(target.parent_path(), error);
-  if (error) fail(folder, "cannot be created: " + error.message());
-  const Draft probe(sibling(target, "probe"));
-}
+void require_writable(const fs::path& folder) { require_replaceable(folder, is_run_folder); }
 
 std::vector<RenderedFile> render(Format format, const RunOutput& output, const std::string& stem) {
   assert(!output.frames.empty());
@@ -182,15 +99,13 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
 
 void write_run_folder(const fs::path& folder, const RunOutput& output, const std::vector<Format>& formats) {
   require_finite(output);
-  require_writable(folder);
-  const fs::path target = resolved(folder);
-  const Draft draft(sibling(target, "partial"));
-  write_all(draft.path(), {{summary_file, summary_json(output.summary)},
-                           {"centerline.csv", centerline_csv(output.frames.back().centerline)},
-                           {"history.csv", history_csv(output.history)},
-                           {checkpoint_file, encode_checkpoint(output.checkpoint)}});
-  for (const Format format : formats) write_all(draft.path(), render(format, output));
-  put_in_place(draft, target);
+  write_whole_folder(folder, is_run_folder, [&](const FolderWriter& write) {
+    write({{summary_file, summary_json(output.summary)},
+           {"centerline.csv", centerline_csv(output.frames.back().centerline)},
+           {"history.csv", history_csv(output.history)},
+           {checkpoint_file, encode_checkpoint(output.checkpoint)}});
+    for (const Format format : formats) write(render(format, output));
+  });
 }
 
 void write_format(const fs::path& file, Format format, const RunOutput& output) {
@@ -198,14 +113,14 @@ void write_format(const fs::path& file, Format format, const RunOutput& output) 
   const fs::path folder = file.parent_path();
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
-  if (error) fail(file, "cannot be created: " + error.message());
+  if (error) throw InputError(fmt::format("{}: cannot be created: {}", file.string(), error.message()));
   const std::vector<RenderedFile> files = render(format, output, file.stem().string());
   for (const auto& [name, bytes] : files) {
     // The last one is the file asked for: it appears when what it refers to is there.
     const bool main = &bytes == &files.back().second;
     const fs::path path = main ? file : folder / name;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-    if (error) fail(path, "cannot be created: " + error.message());
+    if (error) throw InputError(fmt::format("{}: cannot be created: {}", path.string(), error.message()));
     write_file(path, bytes);
   }
 }

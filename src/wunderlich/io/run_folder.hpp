@@ -3,10 +3,10 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "wunderlich/io/formats.hpp"
+#include "wunderlich/io/output_folder.hpp"
 #include "wunderlich/io/run_output.hpp"
 
 namespace wunderlich::io {
@@ -21,9 +21,6 @@ bool is_run_folder(const std::filesystem::path& folder);
 /// Throws InputError, naming the folder, if a run could not be written there: it exists and is neither empty nor a
 /// run folder, it is a file, or the place cannot be written. To be called before the work. Creates missing parents.
 void require_writable(const std::filesystem::path& folder);
-
-/// A file's path relative to the run folder, and its content.
-using RenderedFile = std::pair<std::filesystem::path, std::string>;
 
 /// The files of one format. `stem` replaces the name `ribbon` (`pattern` and `report` for svg and html).
 std::vector<RenderedFile> render(Format format, const RunOutput& output, const std::string& stem = "");

@@ -27,6 +27,9 @@ Method method_of(const Cell& root);
 /// Where a motion starts; nothing for equilibria, which start undeformed.
 InitialState build_initial(const Cell& root, const geometry::RibbonSpec& ribbon);
 
+/// The models beside the ribbon.
+CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbon, const SolverOptions& solver);
+
 /// Output options; throws InputError when they ask for more data than is sensible for this strip.
 OutputOptions build_output(const Cell& root, const geometry::RibbonSpec& ribbon);
 

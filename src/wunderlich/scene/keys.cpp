@@ -314,6 +314,7 @@ const std::vector<Key>& keys() {
     all.insert(all.end(), strips.begin(), strips.end());
     all.insert(all.end(), obstacle_keys().begin(), obstacle_keys().end());
     all.insert(all.end(), solver_keys().begin(), solver_keys().end());
+    all.insert(all.end(), compare_keys().begin(), compare_keys().end());
     all.insert(all.end(), after_solver.begin(), after_solver.end());
     return all;
   }();

@@ -116,6 +116,7 @@ void build_strip(const Cell& root, Scene& scene) {
   scene.initial = build_initial(root, scene.ribbon);
   scene.solver = build_solver(root, scene.ribbon, last_key_time(scene.surroundings));
   scene.output = build_output(root, scene.ribbon);
+  scene.compare = build_compare(root, scene.ribbon, scene.solver);
 }
 
 /// All strips. Those after the first are the first one's scene but for what is theirs.

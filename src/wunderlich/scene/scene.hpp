@@ -69,6 +69,24 @@ struct OutputOptions {
   std::vector<std::string> formats{"vtp", "glb", "svg", "html"};  ///< files beside the tables
 };
 
+/// How the models beside the ribbon are built.
+struct CompareOptions {
+  struct Shell {
+    int along = 0, across = 0;  ///< vertices
+    double time_step = 0;       ///< [s]
+  };
+  int rod_segments = 0;
+  bool paper_ratio = false;  ///< the rod's stiffnesses as 10^4 : 1 : 2, else of a rectangle
+  double thickness = 0;      ///< of the rod [m]
+  double poisson_ratio = 0.3;
+  Shell conforming, nonconforming;
+  double length_tolerance = 0.01;  ///< of shells, relative
+  double time_step = 0;            ///< of the rod [s]
+  double load_time = 0;            ///< of a unit of the load parameter, for models that move to an equilibrium [s]
+  double settle_time = 0;          ///< and at most until they are at rest [s]
+  double damping = 0;              ///< [1/s]
+};
+
 struct Scene {
   std::string name;
   std::string title;     ///< one line, for `wunderlich scenes`
@@ -81,6 +99,7 @@ struct Scene {
   InitialState initial;
   SolverOptions solver;
   OutputOptions output;
+  CompareOptions compare;
   std::string ribbon_name;    ///< of several: what this one is called; empty otherwise
   std::vector<Scene> beside;  ///< further strips: the same scene with another ribbon, and what holds it
 };

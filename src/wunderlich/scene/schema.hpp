@@ -34,10 +34,11 @@ struct Key {
   std::string doc;
 };
 
-/// Every key, sections before their contents; and those below `obstacles` and `contact`, and below `solver`.
+/// Every key, sections before their contents; and those below `obstacles` and `contact`, `solver`, and `compare`.
 const std::vector<Key>& keys();
 const std::vector<Key>& obstacle_keys();
 const std::vector<Key>& solver_keys();
+const std::vector<Key>& compare_keys();
 
 /// The key with this pattern, or null.
 const Key* find_key(const std::string& pattern);

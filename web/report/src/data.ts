@@ -61,7 +61,7 @@ export interface Run {
   bodies: Body[];
 }
 
-function bytes(text: string): ArrayBuffer {
+export function bytes(text: string): ArrayBuffer {
   const binary = atob(text);
   const out = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; ++i) out[i] = binary.charCodeAt(i);
@@ -70,7 +70,7 @@ function bytes(text: string): ArrayBuffer {
 
 const floats = (text: string) => new Float32Array(bytes(text));
 
-function points(text: string, low: number[], scale: number): Float32Array {
+export function points(text: string, low: number[], scale: number): Float32Array {
   const packed = new Uint16Array(bytes(text));
   const out = new Float32Array(packed.length);
   for (let i = 0; i < packed.length; ++i) out[i] = low[i % 3] + scale * packed[i];
@@ -78,7 +78,7 @@ function points(text: string, low: number[], scale: number): Float32Array {
 }
 
 /** The octahedral map, undone. */
-function normals(text: string): Float32Array {
+export function normals(text: string): Float32Array {
   const packed = new Int16Array(bytes(text));
   const count = packed.length / 2;
   const out = new Float32Array(3 * count);
@@ -108,7 +108,7 @@ function frame(raw: any, low: number[], scale: number): Frame {
 }
 
 // eslint-disable-next-line @typescript-eslint/no-explicit-any
-function body(raw: any): Body {
+export function body(raw: any): Body {
   return {
     points: floats(raw.points),
     normals: floats(raw.normals),

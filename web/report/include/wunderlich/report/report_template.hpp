@@ -8,4 +8,10 @@ namespace wunderlich::report {
 /// HTML with one place for the data of a run, see `wunderlich::io::report_page`.
 std::string_view report_template();
 
+/// The same for a comparison of models, see `wunderlich::io::comparison_page`.
+std::string_view comparison_template();
+
+/// The same for a sweep, see `wunderlich::sweep::collect`.
+std::string_view sweep_template();
+
 }  // namespace wunderlich::report

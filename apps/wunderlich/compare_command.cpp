@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "wunderlich/io/comparison.hpp"
+#include "wunderlich/io/output_folder.hpp"
+#include "wunderlich/report/report_template.hpp"
+#include "wunderlich/scene/compare.hpp"
+#include "wunderlich/scene/read.hpp"
+
+namespace wunderlich::app {
+
+namespace {
+
+void print_table(const Comparison& comparison) {
+  std::cout << fmt::format("{:<20} {:<18} {:>9} {:>11} {:>12} {:>10} {:>10} {:>10} {:>11}\n", "model", "resolution",
+                           "unknowns", "constraints", "V l/(D w)", "area", "diagonal", "rim", "us a step");
+  for (const ModelResult& m : comparison.models) {
+    std::cout << fmt::format("{:<20} {:<18} {:>9} {:>11} {:>12.6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>11.4g}\n", m.model,
+                             m.resolution, m.unknowns, m.constraints, m.energy.normalized, m.isometry.area,
+                             m.isometry.diagonal, m.isometry.rim, m.step_us);
+  }
+}
+
+/// The worst of the models decides.
+int exit_code(const Comparison& comparison) {
+  int code = done;
+  for (const ModelResult& m : comparison.models) {
+    if (m.converged) continue;
+    std::cerr << fmt::format("{}: did not converge: {}; its last good state is written\n", m.model, m.failure);
+    code = not_converged;
+  }
+  return code;
+}
+
+}  // namespace
+
+int compare_command(const CompareArguments& arguments) {
+  const std::vector<scene::Model> models = scene::parse_models(arguments.models);
+  const scene::Scene scene = scene::read_scene(arguments.scene, arguments.set);
+  scene::check_start(scene);
+  const std::filesystem::path folder =
+      arguments.out.empty() ? std::filesystem::path("out") / (scene.name + "-compare") : arguments.out;
+  io::require_replaceable(folder, io::is_comparison);
+
+  catch_interrupts();
+  Comparison comparison;
+  {
+    ProgressLine progress(arguments.quiet);
+    comparison = scene::compare(scene, models, [&](const scene::RunStatus& status) {
+      progress.show(status);
+      return !interrupt_requested();
+    });
+  }
+  if (interrupt_requested()) {
+    std::cerr << scene.name << ": interrupted; nothing was written\n";
+    return interrupted;
+  }
+  io::write_comparison(folder, comparison, report::comparison_template());
+  if (!arguments.quiet) {
+    print_table(comparison);
+    std::cout << folder.string() << "\n";
+  }
+  return exit_code(comparison);
+}
+
+}  // namespace wunderlich::app

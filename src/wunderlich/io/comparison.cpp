@@ -1,0 +1,151 @@
+#include "wunderlich/io/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "wunderlich/base/version.hpp"
+#include "wunderlich/io/obj.hpp"
+#include "wunderlich/io/output_folder.hpp"
+#include "wunderlich/io/packed_body.hpp"
+#include "wunderlich/io/packed_mesh.hpp"
+
+namespace wunderlich::io {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t point_budget = 1u << 19;  // moving points of one model in the page
+
+struct Column {
+  const char* name;
+  double (*value)(const ModelResult&);
+};
+
+/// Time a simulated second; a path of equilibria has none.
+double per_second(const ModelResult& m) { return m.moved_seconds > 0 ? m.wall_seconds / m.moved_seconds : 0; }
+
+constexpr std::array<Column, 16> columns{{
+    {"unknowns", [](const ModelResult& m) { return static_cast<double>(m.unknowns); }},
+    {"constraints", [](const ModelResult& m) { return static_cast<double>(m.constraints); }},
+    {"elastic", [](const ModelResult& m) { return m.energy.elastic; }},
+    {"normalized", [](const ModelResult& m) { return m.energy.normalized; }},
+    {"kinetic", [](const ModelResult& m) { return m.energy.kinetic; }},
+    {"area_error", [](const ModelResult& m) { return m.isometry.area; }},
+    {"diagonal_strain", [](const ModelResult& m) { return m.isometry.diagonal; }},
+    {"rim_stretch", [](const ModelResult& m) { return m.isometry.rim; }},
+    {"steps", [](const ModelResult& m) { return static_cast<double>(m.steps); }},
+    {"iterations_mean", [](const ModelResult& m) { return m.iterations; }},
+    {"step_us_median", [](const ModelResult& m) { return m.step_us; }},
+    {"wall_seconds", [](const ModelResult& m) { return m.wall_seconds; }},
+    {"moved_seconds", [](const ModelResult& m) { return m.moved_seconds; }},
+    {"wall_per_second", per_second},
+    {"frames", [](const ModelResult& m) { return static_cast<double>(m.frames.size()); }},
+    {"converged", [](const ModelResult& m) { return m.converged ? 1.0 : 0.0; }},
+}};
+
+double finite(double value, const ModelResult& model, const char* name) {
+  if (!std::isfinite(value)) throw std::domain_error(fmt::format("{}: {} is not finite", model.model, name));
+  return value;
+}
+
+Json model_json(const ModelResult& model) {
+  Json out = {{"model", model.model}, {"method", model.method}, {"resolution", model.resolution}};
+  for (const Column& column : columns) out[column.name] = finite(column.value(model), model, column.name);
+  out["converged"] = model.converged;
+  if (!model.failure.empty()) out["failure"] = model.failure;
+  for (const auto& [name, us] : model.phases_us) out["phases_us"][name] = us;
+  return out;
+}
+
+/// Every k-th frame, the first and the last always.
+std::vector<const Frame*> chosen(const std::vector<Frame>& frames) {
+  const std::size_t each = std::max<std::size_t>(1, frames.front().surface.points.size());
+  const std::size_t count = std::min(std::max<std::size_t>(2, point_budget / each), frames.size());
+  std::vector<const Frame*> out;
+  for (std::size_t k = 0; k < count; ++k) {
+    out.push_back(&frames[count == 1 ? 0 : k * (frames.size() - 1) / (count - 1)]);
+  }
+  return out;
+}
+
+Json shapes_json(const ModelResult& model, const std::vector<Body>& bodies) {
+  const std::vector<const Frame*> frames = chosen(model.frames);
+  Cube cube;
+  for (const Frame* frame : frames) {
+    for (const Vec3& p : frame->surface.points) cube.include(p);
+  }
+  Json out = model_json(model);
+  out["low"] = {cube.low.x(), cube.low.y(), cube.low.z()};
+  out["scale"] = cube.size() / largest_count;
+  out["triangles"] = packed_triangles(frames.front()->surface);
+  out["frames_shown"] = Json::array();
+  for (const Frame* frame : frames) {
+    out["frames_shown"].push_back({{"time", frame->time},
+                                   {"points", packed_points(frame->surface.points, cube)},
+                                   {"normals", packed_normals(frame->surface.normals)}});
+  }
+  out["bodies"] = Json::array();
+  for (const Body& body : bodies) {
+    std::vector<Pose> poses;
+    for (const Frame* frame : frames) poses.push_back(body.poses[static_cast<std::size_t>(frame - model.frames.data())]);
+    out["bodies"].push_back(body_json(body.mesh, poses));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string comparison_csv(const Comparison& comparison) {
+  std::string out = "model,method,resolution";
+  for (const Column& column : columns) out += fmt::format(",{}", column.name);
+  out += "\n";
+  for (const ModelResult& model : comparison.models) {
+    out += fmt::format("{},{},{}", model.model, model.method, model.resolution);
+    for (const Column& column : columns) out += fmt::format(",{}", finite(column.value(model), model, column.name));
+    out += "\n";
+  }
+  return out;
+}
+
+std::string comparison_json(const Comparison& comparison) {
+  Json out = {{"program", program}, {"version", version}, {"scene", comparison.scene}, {"models", Json::array()}};
+  for (const ModelResult& model : comparison.models) out["models"].push_back(model_json(model));
+  return out.dump(2) + "\n";
+}
+
+std::string comparison_page(const Comparison& comparison, std::string_view page) {
+  Json data = {{"scene", comparison.scene},
+               {"title", comparison.title},
+               {"text", comparison.scene_text},
+               {"program", program},
+               {"version", version},
+               {"models", Json::array()}};
+  for (std::size_t i = 0; i < comparison.models.size(); ++i) {
+    data["models"].push_back(shapes_json(comparison.models[i], comparison.bodies[i]));
+  }
+  return filled_page(page, data.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+bool is_comparison(const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(folder / "comparison.json", error);
+}
+
+void write_comparison(const std::filesystem::path& folder, const Comparison& comparison, std::string_view page) {
+  write_whole_folder(folder, is_comparison, [&](const FolderWriter& write) {
+    write({{"comparison.json", comparison_json(comparison)},
+           {"comparison.csv", comparison_csv(comparison)},
+           {"report.html", comparison_page(comparison, page)}});
+    for (const ModelResult& model : comparison.models) {
+      write({{model.model + ".obj", obj(model.frames.back().surface, model.model)}});
+    }
+  });
+}
+
+}  // namespace wunderlich::io

@@ -1,0 +1,169 @@
+#include "wunderlich/scene/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "wunderlich/base/error.hpp"
+#include "wunderlich/geometry/isometry.hpp"
+#include "wunderlich/scene/compare_models.hpp"
+#include "wunderlich/scene/text.hpp"
+
+namespace wunderlich::scene {
+
+namespace {
+
+constexpr std::array<const char*, 4> names{"ribbon", "rod", "shell-conforming", "shell-nonconforming"};
+constexpr int kAcross = 8;  // parts of a ruling that are measured
+
+/// Scalars that the ribbon's method solves for, and the equations between them.
+void count_ribbon(const Scene& scene, ModelResult& result) {
+  const int n = scene.ribbon.segments;
+  if (scene.solver.method == Method::two_stage) {
+    result.unknowns = 3 * (n + 1) + 3 * n + (n + 1);  // positions, turns of frames, rulings   @eq Shen2015:7
+    result.constraints = 4 * n;                       // length, binormal, torsion match, ruling bound   @eq Shen2015:6.6
+    return;
+  }
+  result.unknowns = 2 * n + 6;  // curvature and ruling of each hinge, and the first pose
+}
+
+ModelResult run_ribbon(const Scene& scene, const Observer& observer) {
+  const RunResult run = scene::run(scene, observer);
+  ModelResult result;
+  result.model = model_name(Model::ribbon);
+  result.method = run.summary.method;
+  result.resolution = fmt::format("{} segments", scene.ribbon.segments);
+  result.converged = run.summary.converged;
+  result.failure = run.outcome == Outcome::interrupted ? "interrupted" : run.summary.failure;
+  count_ribbon(scene, result);
+  result.energy = run.summary.energy;
+  const geometry::State& last = run.progress.records.back().states.front();
+  const bool path = scene.solver.method == Method::equilibrium;
+  const geometry::Ribbon ribbon = path ? path_ribbon(scene, last) : motion_ribbon(scene, last.time);
+  result.isometry = geometry::isometry_errors(geometry::facet_grid(ribbon, last, kAcross));
+  result.steps = run.summary.steps;
+  result.step_us = run.summary.timing.step_us_median;
+  result.iterations = run.summary.timing.iterations_mean;
+  result.wall_seconds = run.summary.timing.wall_seconds;
+  result.moved_seconds = path ? 0 : last.time;
+  for (const Record& record : run.progress.records) result.frames.push_back(frame_of(scene, record));
+  return result;
+}
+
+}  // namespace
+
+const char* model_name(Model model) { return names[static_cast<std::size_t>(model)]; }
+
+std::vector<Model> parse_models(const std::string& list) {
+  std::vector<Model> models;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string word = list.substr(begin, end - begin);
+    begin = end + 1;
+    const auto found = std::find(names.begin(), names.end(), word);
+    if (found == names.end()) {
+      const std::string guess = nearest(word, {names.begin(), names.end()});
+      throw InputError(fmt::format("--models: {} is no model{}; must be some of {}, separated by commas", shown(word),
+                                   guess.empty() ? "" : fmt::format(" (did you mean `{}`?)", guess),
+                                   joined({names.begin(), names.end()})));
+    }
+    const auto model = static_cast<Model>(found - names.begin());
+    if (std::find(models.begin(), models.end(), model) != models.end()) {
+      throw InputError(fmt::format("--models: `{}` stands there twice", word));
+    }
+    models.push_back(model);
+  }
+  return models;
+}
+
+ModelResult run_model(const Scene& scene, Model model, const Observer& observer) {
+  const Observer named = [&](const RunStatus& status) {
+    return !observer || observer({model_name(model), status.fraction, status.iterations});
+  };
+  switch (model) {
+    case Model::ribbon:
+      return run_ribbon(scene, named);
+    case Model::rod:
+      return run_rod(scene, named);
+    case Model::shell_conforming:
+    case Model::shell_nonconforming:
+      break;
+  }
+  return run_shell(scene, model, named);
+}
+
+Comparison compare(const Scene& scene, const std::vector<Model>& models, const Observer& observer) {
+  if (!scene.beside.empty()) throw InputError(scene.name + ": models are compared on one strip; this scene has several");
+  Comparison comparison{scene.name, scene.title, scene.resolved, {}, {}};
+  for (const Model model : models) {
+    comparison.models.push_back(run_model(scene, model, observer));
+    const ModelResult& result = comparison.models.back();
+    std::vector<double> times;
+    for (const Frame& frame : result.frames) times.push_back(frame.time);
+    comparison.bodies.push_back(bodies_of(scene, times));
+    if (result.failure == "interrupted") break;
+  }
+  return comparison;
+}
+
+ModelLog::ModelLog(const Scene& scene, Model model, double until, const Observer& observer)
+    : scene_(scene), observer_(observer), until_(until) {
+  result_.model = model_name(model);
+}
+
+bool ModelLog::step(double time, double seconds, int iterations) {
+  step_us_.push_back(1e6 * seconds);
+  result_.wall_seconds += seconds;
+  ++result_.steps;
+  iterations_ += iterations;
+  const bool goes_on = observer_({"", std::min(1.0, time / until_), static_cast<int>(iterations_)});
+  if (!goes_on) result_.failure = "interrupted";
+  return goes_on;
+}
+
+void ModelLog::phase(const std::string& name, double seconds) {
+  for (auto& [known, sum] : result_.phases_us) {
+    if (known == name) {
+      sum += 1e6 * seconds;
+      return;
+    }
+  }
+  result_.phases_us.emplace_back(name, 1e6 * seconds);
+}
+
+bool ModelLog::wants_frame(double time) {
+  if (time < next_frame_) return false;
+  next_frame_ += until_ / std::max(1, scene_.output.frames - 1);
+  return true;
+}
+
+void ModelLog::frame(double time, Mesh surface) { result_.frames.push_back({time, {}, std::move(surface)}); }
+
+ModelResult ModelLog::finished() {
+  if (!step_us_.empty()) {
+    const auto middle = step_us_.begin() + static_cast<std::ptrdiff_t>(step_us_.size() / 2);
+    std::nth_element(step_us_.begin(), middle, step_us_.end());
+    result_.step_us = *middle;
+    result_.iterations = static_cast<double>(iterations_) / static_cast<double>(step_us_.size());
+    for (auto& [name, sum] : result_.phases_us) sum /= static_cast<double>(step_us_.size());
+  }
+  return std::move(result_);
+}
+
+constraint::Surroundings stretched(const constraint::Surroundings& surroundings, double factor) {
+  constraint::Surroundings out = surroundings;
+  for (constraint::Support& support : out.supports) {
+    for (constraint::PoseKey& key : support.motion.keys) key.time *= factor;
+    support.release *= factor;
+  }
+  for (constraint::Load& load : out.loads) {
+    for (constraint::LoadKey& key : load.keys) key.time *= factor;
+  }
+  for (constraint::Obstacle& obstacle : out.obstacles) {
+    for (constraint::PoseKey& key : obstacle.motion.keys) key.time *= factor;
+  }
+  return out;
+}
+
+}  // namespace wunderlich::scene

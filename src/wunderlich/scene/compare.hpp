@@ -1,0 +1,29 @@
+/// Runs other models than the ribbon on the same scene, side by side.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wunderlich/base/comparison.hpp"
+#include "wunderlich/scene/run.hpp"
+
+namespace wunderlich::scene {
+
+enum class Model { ribbon, rod, shell_conforming, shell_nonconforming };
+
+/// As the command line says it: "shell-conforming".
+const char* model_name(Model model);
+
+/// "ribbon,rod": each at most once, at least one. Throws InputError.
+std::vector<Model> parse_models(const std::string& list);
+
+/// One model on the scene. What it cannot do of it, and where it did not get through, is the result's `failure`; nothing is
+/// hidden. Throws nothing for that. An observer that returns false ends it: the result is then not `converged`, with
+/// "interrupted" for a failure.
+ModelResult run_model(const Scene& scene, Model model, const Observer& observer);
+
+/// All of them, one after the other, with the scene's obstacles at their frames. Throws InputError where the scene has
+/// several strips.
+Comparison compare(const Scene& scene, const std::vector<Model>& models, const Observer& observer);
+
+}  // namespace wunderlich::scene
