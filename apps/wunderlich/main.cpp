@@ -89,6 +89,8 @@ void add_sweep(CLI::App& program, SweepArguments& arguments, std::string& folder
                 : status->parsed()    ? sweep_status_command(folder)
                                       : sweep_collect_command(folder);
   });
+}
+
 void add_compare(CLI::App& program, CompareArguments& arguments, int& exit_code) {
   CLI::App* command = program.add_subcommand("compare", "Run a scene by other models as well, side by side");
   command->add_option("scene", arguments.scene, "A scene file, or the name of a shipped scene")

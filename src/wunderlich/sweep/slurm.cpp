@@ -23,7 +23,7 @@ constexpr std::size_t kRunsOfAShard = 500;
 constexpr const char* kJobFile = "slurm/job";
 
 /// For a POSIX shell.
-std::string quoted(const std::string& text) {
+std::string shell_word(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out + "'";
@@ -63,8 +63,8 @@ std::string job_script(const SlurmOptions& options, std::size_t runs, const std:
   if (!options.walltime.empty()) out += fmt::format("#SBATCH --time={}\n", options.walltime);
   if (!options.partition.empty()) out += fmt::format("#SBATCH --partition={}\n", options.partition);
   for (const std::string& more : options.more) out += fmt::format("#SBATCH {}\n", more);
-  out += fmt::format("exec {} sweep {} --out {} --shard \"$SLURM_ARRAY_TASK_ID/{}\" --jobs {} --quiet\n", quoted(program),
-                     quoted((folder / "sweep.yaml").string()), quoted(folder.string()), shards, options.jobs);
+  out += fmt::format("exec {} sweep {} --out {} --shard \"$SLURM_ARRAY_TASK_ID/{}\" --jobs {} --quiet\n", shell_word(program),
+                     shell_word((folder / "sweep.yaml").string()), shell_word(folder.string()), shards, options.jobs);
   return out;
 }
 
@@ -75,7 +75,7 @@ std::string submit(const SlurmOptions& options, const Sweep& sweep, const std::s
   if (error) throw InputError(fmt::format("{}: cannot be created: {}", (where / "slurm").string(), error.message()));
   const fs::path script = where / "slurm" / "job.sh";
   io::write_file(script, job_script(options, run_count(sweep), program, where, sweep.name));
-  const Answer answer = call("sbatch --parsable " + quoted(script.string()));
+  const Answer answer = call("sbatch --parsable " + shell_word(script.string()));
   if (answer.code == 127) {
     throw InputError(fmt::format("--engine slurm: there is no `sbatch` here; {} is what it would be given",
                                  script.string()));
@@ -91,7 +91,7 @@ std::string queue_of(const fs::path& folder) {
   if (!fs::exists(folder / kJobFile, error)) return "";
   std::string job = io::read_file(folder / kJobFile, 100);
   job = job.substr(0, job.find('\n'));
-  const Answer answer = call(fmt::format("squeue --noheader --array --format=%T --jobs={}", quoted(job)));
+  const Answer answer = call(fmt::format("squeue --noheader --array --format=%T --jobs={}", shell_word(job)));
   if (answer.code != 0) return "";
   std::map<std::string, int> states;
   std::istringstream lines(answer.text);

@@ -37,7 +37,8 @@ std::string cell(const std::string& text) {
     if (c == '"') out += '"';
     out += c == '\n' ? ' ' : c;
   }
-  return out + "\"";
+  out += '"';
+  return out;
 }
 
 std::string number_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
@@ -112,30 +113,31 @@ class Stream {
 std::string head_row(const Sweep& sweep) {
   std::string out = "run,key";
   for (const Axis& axis : sweep.axes) {
-    for (const std::string& name : axis.columns) out += "," + cell(name);
+    for (const std::string& name : axis.columns) out += fmt::format(",{}", cell(name));
   }
   out += ",status,reason";
   for (const bool timing : {false, true}) {
     for (const Collected& result : sweep.collected) {
-      if (is_timing(result) == timing) out += "," + cell(result.name);
+      if (is_timing(result) == timing) out += fmt::format(",{}", cell(result.name));
     }
   }
-  return out + ",wall_seconds\n";
+  out += ",wall_seconds\n";
+  return out;
 }
 
 std::string csv_row(const Sweep& sweep, std::size_t run, const Row& row) {
   std::string out = fmt::format("{},{}", run, row.key);
   const std::vector<std::size_t> place = place_of(sweep, run);
   for (std::size_t a = 0; a < place.size(); ++a) {
-    for (const std::string& word : sweep.axes[a].points[place[a]].words) out += "," + cell(word);
+    for (const std::string& word : sweep.axes[a].points[place[a]].words) out += fmt::format(",{}", cell(word));
   }
   out += row.record ? fmt::format(",{},{}", status_name(row.record->status), cell(row.record->reason)) : ",,";
   for (const bool timing : {false, true}) {
     for (const Collected& result : sweep.collected) {
-      if (is_timing(result) == timing) out += "," + number_cell(figure(row.body, result.path));
+      if (is_timing(result) == timing) out += fmt::format(",{}", number_cell(figure(row.body, result.path)));
     }
   }
-  return out + "," + number_cell(figure(row.body, "timing.wall_seconds")) + "\n";
+  return out + fmt::format(",{}\n", number_cell(figure(row.body, "timing.wall_seconds")));
 }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
