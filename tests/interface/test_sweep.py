@@ -8,7 +8,7 @@ import struct
 import subprocess
 import time
 
-from program import PROGRAM, ProgramTest, main
+from program import PROGRAM, SCENES, ProgramTest, main
 
 SWEEP = """\
 title: Heavier and heavier
@@ -135,6 +135,12 @@ class Sweep(ProgramTest):
         self.assertIn('--shard "$SLURM_ARRAY_TASK_ID/4"', script)
         if result.returncode == 2:  # as everywhere without Slurm
             self.assertIn("sbatch", result.stderr)
+
+    def test_shipped_sweeps_can_be_run(self):
+        for path in sorted((SCENES.parent / "sweeps").glob("*.yaml")):
+            self.expect(0, "sweep", path, "--out", path.stem, "--shard", "1/400", "--quiet")
+            self.expect(0, "sweep", "collect", path.stem)
+            self.assertEqual(self.table(path.stem)[0]["status"], "done", path)
 
     def test_bad_input(self):
         self.sweep()
