@@ -19,11 +19,12 @@ LAYERS = {
     "energy": ["base", "math", "geometry"],
     "constraint": ["base", "math", "geometry", "contact"],
     "solver": ["base", "math", "geometry", "energy", "contact", "constraint"],
-    "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver"],
+    "baseline": ["base", "math", "geometry", "contact", "constraint"],
+    "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver", "baseline"],
     "io": ["base"],
     "sweep": ["base", "geometry", "scene", "io"],
 }
-CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver"]
+CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver", "baseline"]
 # layer -> prefixes of third-party headers it may include; what has no slash and no dot is the standard library
 THIRD_PARTY = {layer: ["Eigen/"] for layer in CORE}
 THIRD_PARTY["scene"] = ["Eigen/", "yaml-cpp/", "fmt/"]
@@ -129,6 +130,7 @@ PLANTED = {
     "energy/i.hpp": ("auto s = std::ranges::max(v);", "libc++ 13"),
     "base/j.hpp": ('#include "types.hpp"', "full path"),
     "scene/k.hpp": ("#include <wunderlich/base/types.hpp>", "with quotes"),
+    "baseline/m.hpp": ('#include "wunderlich/solver/n.hpp"', "baseline must not include solver"),
     "utils/l.hpp": ("", "no layer 'utils'"),
 }
 CLEAN = '// #include <iostream>\n#include <vector>\n\n#include <Eigen/Core>\n\n#include "wunderlich/base/a.hpp"\n'

@@ -1,0 +1,101 @@
+#include "wunderlich/baseline/rod/motion.hpp"
+
+namespace wunderlich::baseline::rod {
+
+namespace {
+
+/// A force and torque at a node, on the edge that follows (at the end of an open rod the last).
+void add_load(const Rod& rod, const State& state, const constraint::Load& load, double time, Objective& out) {
+  constraint::LoadKey key = constraint::load_at(load, time);
+  const std::size_t node = static_cast<std::size_t>(load.node), edge = std::min(node, rod.edges() - 1);
+  const Section s = section(state, edge);
+  if (load.frame == constraint::LoadFrame::material) {
+    Mat3 frame;
+    frame << s.m1, s.m2, s.m3;
+    key.force = frame * key.force;
+    key.torque = frame * key.torque;
+  }
+  out.force[node] += key.force;
+  out.moment[edge] += key.torque.dot(s.m3);
+  const Vec3 couple = key.torque.cross(s.m3) / (state.x[edge + 1] - state.x[edge]).norm();
+  out.force[edge + 1] += couple;
+  out.force[edge] -= couple;
+}
+
+/// Loads and solids at `time`; no ties.
+void place(const Rod& rod, const constraint::Surroundings& surroundings, const State& state, double time,
+           Objective& out) {
+  out.force.resize(rod.nodes());
+  for (std::size_t i = 0; i < rod.nodes(); ++i) out.force[i] = rod.node_mass[i] * surroundings.gravity;
+  out.moment.assign(rod.edges(), 0.0);
+  for (const constraint::Load& load : surroundings.loads) add_load(rod, state, load, time, out);
+  out.node_tie.clear();
+  out.solids = solids_at(rod, surroundings, time);
+}
+
+/// Springs that make the minimum the end of a step of length h: inertia, and drag by the tangents at its start.
+void tie(const Rod& rod, const Damping& damping, double h, const State& state, Objective& out) {
+  out.node_tie.resize(rod.nodes());
+  out.node_goal.resize(rod.nodes());
+  out.edge_tie.resize(rod.edges());
+  out.edge_goal.resize(rod.edges());
+  for (std::size_t i = 0; i < rod.nodes(); ++i) {
+    const std::size_t before = i > 0 ? i - 1 : 0, after = i < rod.edges() ? i + 1 : i;
+    const Vec3 t = (state.x[after] - state.x[before]).normalized();
+    const Mat3 drag = damping.normal * Mat3::Identity() + (damping.tangent - damping.normal) * t * t.transpose();
+    const Mat3 scaled = Mat3::Identity() + h * drag;
+    out.node_tie[i] = rod.node_mass[i] / (h * h) * scaled;
+    // m (x - x0 - h v0)/h^2 + m drag (x - x0)/h = tie (x - goal)
+    out.node_goal[i] = state.x[i] + h * scaled.inverse() * state.v[i];
+  }
+  for (std::size_t j = 0; j < rod.edges(); ++j) {
+    const double scaled = 1 + h * damping.normal;
+    out.edge_tie[j] = rod.edge_inertia[j] / (h * h) * scaled;
+    out.edge_goal[j] = state.theta[j] + h / scaled * state.theta_dot[j];
+  }
+}
+
+}  // namespace
+
+Report equilibrium(const Rod& rod, const constraint::Surroundings& surroundings, double time, const Options& options,
+                   State& state, Workspace& work) {
+  place(rod, surroundings, state, time, work.objective);
+  hold(rod, surroundings.supports, state, time, true, work.unknowns);
+  const Report report = minimise(rod, options, state, work);
+  if (report.converged()) state.time = time;
+  return report;
+}
+
+Report step(const Rod& rod, const constraint::Surroundings& surroundings, const Damping& damping, double time,
+            const Options& options, State& state, Workspace& work) {
+  const double h = time - state.time;
+  place(rod, surroundings, state, time, work.objective);
+  tie(rod, damping, h, state, work.objective);
+  hold(rod, surroundings.supports, state, time, false, work.unknowns);
+  State next = state;
+  Options moving = options;
+  moving.leave_saddles = false;
+  const Report report = minimise(rod, moving, next, work);
+  if (!report.converged()) return report;
+  for (std::size_t i = 0; i < rod.nodes(); ++i) next.v[i] = (next.x[i] - state.x[i]) / h;
+  for (std::size_t j = 0; j < rod.edges(); ++j) next.theta_dot[j] = (next.theta[j] - state.theta[j]) / h;
+  next.time = time;
+  state = next;
+  return report;
+}
+
+double kinetic_energy(const Rod& rod, const State& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < rod.nodes(); ++i) sum += 0.5 * rod.node_mass[i] * state.v[i].squaredNorm();
+  for (std::size_t j = 0; j < rod.edges(); ++j)
+    sum += 0.5 * rod.edge_inertia[j] * state.theta_dot[j] * state.theta_dot[j];
+  return sum;
+}
+
+double gravity_energy(const Rod& rod, const Vec3& gravity, const State& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < rod.nodes(); ++i) sum -= rod.node_mass[i] * gravity.dot(state.x[i]);
+  return sum;
+}
+
+}  // namespace wunderlich::baseline::rod
