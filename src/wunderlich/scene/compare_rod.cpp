@@ -121,7 +121,7 @@ ModelResult run_rod(const Scene& scene, const Observer& observer) {
     run.state = rod::straight_state(run.rod);
     run.log.frame(0, rod::surface_mesh(run.rod, run.state, scene.output.across));
   }
-  result.energy.elastic = rod::elastic_energy(run.rod, run.state).total();
+  result.energy.elastic = rod::elastic_energy(run.rod, run.state).sum();
   result.energy.normalized =
       result.energy.elastic * scene.ribbon.length / (scene.ribbon.bending_stiffness * scene.ribbon.width);
   result.energy.kinetic = run.path ? 0 : rod::kinetic_energy(run.rod, run.state);
