@@ -2,8 +2,8 @@
 // turned by +-pi/2 and brought together by 0.05 in 20 equal load steps; by the rod and by the ribbon.
 #include <benchmark/benchmark.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "wunderlich/baseline/rod/motion.hpp"
 #include "wunderlich/geometry/state.hpp"
@@ -42,11 +42,10 @@ constraint::Surroundings ends(int nodes) {
   return surroundings;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+/// CPU time of this process [s].
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// range(0): nodes, range(1): 0 averaged curvature, 1 separate ones. Time is that of all load steps.
+/// range(0): nodes, range(1): 0 averaged curvature, 1 separate ones. Counters are of CPU time.
 void RodProblemT(benchmark::State& state) {
   const int nodes = static_cast<int>(state.range(0));
   const geometry::RibbonSpec spec = spec_of(nodes);
@@ -61,14 +60,14 @@ void RodProblemT(benchmark::State& state) {
     at = rod::straight_state(strip);
     for (Vec3& x : at.x) x.z() += 1e-4 * std::sin(kPi * x.x());
     iterations = 0;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = cpu_seconds();
     for (int k = 1; k <= kSteps; ++k) {
       const rod::Report report = rod::equilibrium(strip, surroundings, static_cast<double>(k) / kSteps, {}, at, work);
       iterations += report.iterations;
       if (!report.converged()) state.SkipWithError(rod::outcome_name(report.outcome));
-      if (k == 1) first += seconds_since(start);
+      if (k == 1) first += cpu_seconds() - start;
     }
-    all += seconds_since(start);
+    all += cpu_seconds() - start;
   }
   const double runs = static_cast<double>(state.iterations());
   state.counters["equilibrium_ms"] = 1e3 * all / runs / kSteps;
@@ -78,7 +77,7 @@ void RodProblemT(benchmark::State& state) {
   state.counters["energy"] = rod::elastic_energy(strip, at).sum();
 }
 
-/// range(0): nodes.
+/// range(0): nodes. Counters are of CPU time.
 void RibbonProblemT(benchmark::State& state) {
   const int nodes = static_cast<int>(state.range(0));
   const geometry::Ribbon ribbon = geometry::make_ribbon(spec_of(nodes));
@@ -92,7 +91,7 @@ void RibbonProblemT(benchmark::State& state) {
   for (auto _ : state) {
     at = solver::start_path(path);
     steps = 0;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = cpu_seconds();
     while (at.phase != solver::Phase::done) {
       const bool load = at.phase == solver::Phase::load;
       const solver::PathStep step = solver::advance(path, at, work);
@@ -102,7 +101,7 @@ void RibbonProblemT(benchmark::State& state) {
         return;
       }
     }
-    all += seconds_since(start);
+    all += cpu_seconds() - start;
   }
   const double runs = static_cast<double>(state.iterations());
   state.counters["equilibrium_ms"] = 1e3 * all / runs / kSteps;

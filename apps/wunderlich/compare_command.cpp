@@ -44,7 +44,8 @@ int compare_command(const CompareArguments& arguments) {
   const scene::Scene scene = scene::read_scene(arguments.scene, arguments.set);
   scene::check_start(scene);
   const std::filesystem::path folder =
-      arguments.out.empty() ? std::filesystem::path("out") / (scene.name + "-compare") : arguments.out;
+      arguments.out.empty() ? std::filesystem::path("out") / (scene.name + "-compare")
+                            : std::filesystem::path(arguments.out);
   io::require_replaceable(folder, io::is_comparison);
 
   catch_interrupts();

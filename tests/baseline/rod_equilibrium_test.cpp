@@ -195,6 +195,9 @@ TEST(RodEquilibrium, LoopsKeepTheirHalfTwists) {
     spec.closure = geometry::Closure::loop;
     spec.half_twists = half_twists;
     const Rod sample = rod::make_rod(spec, rod::physical(spec, 0.3, 0.01));
+    for (std::size_t i = 1; i <= sample.edges(); ++i) {  // the seam's hinge like any other
+      EXPECT_NEAR(rod::strain(sample, rod::ring_state(sample), i).twist, kPi * half_twists, 1e-9);
+    }
     const PathEnd end = along_path(sample, {}, rod::ring_state(sample), 1);
     ASSERT_TRUE(end.done) << rod::outcome_name(end.last.outcome) << " " << end.last.iterations;
     EXPECT_EQ(end.last.negative_modes, 0);

@@ -31,7 +31,10 @@ TEST(RodSurface, FlatStripIsFlat) {
   const rod::State state = rod::straight_state(sample);
   EXPECT_NEAR(rod::area_change(sample, state), 0, 1e-14);
   EXPECT_NEAR(rod::rim_stretch(sample, state)[0], 0, 1e-14);
-  EXPECT_EQ(rod::surface_points(sample, state, 4).size(), 36u * 5);
+  const std::vector<Vec3> points = rod::surface_points(sample, state, 4);
+  ASSERT_EQ(points.size(), 36u * 5);
+  EXPECT_LE((points[5 * 9 + 2] - state.x[9]).norm(), 1e-15);
+  EXPECT_LE((points[5 * 9 + 4] - state.x[9] - Vec3(0, -0.5 * sample.width, 0)).norm(), 1e-15);  // m2 = -y
   EXPECT_EQ(rod::surface_mesh(sample, state, 4).triangles.size(), 35u * 8);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <span>
+#include <tuple>
 
 #include "wunderlich/math/rotation.hpp"
 
