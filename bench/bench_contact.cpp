@@ -195,7 +195,7 @@ void SelfSolve(benchmark::State& state) {
 }
 
 // Arguments: 0 in free fall, 1 with the cylinder; the step in microseconds.
-BENCHMARK(StepDrape)->ArgsProduct({{0, 1}, {1000, 2000, 5000}})->Unit(benchmark::kMillisecond);
+BENCHMARK(StepDrape)->ArgsProduct({{0, 1}, {1000, 2000, 5000, 10000}})->Unit(benchmark::kMillisecond);
 // Arguments: 0 on a plane, 1 along a cylinder; segments.
 BENCHMARK(Detection)->ArgsProduct({{0, 1}, {50, 100, 400, 1600, 6400}})->Unit(benchmark::kMicrosecond);
 BENCHMARK(Solve)->ArgsProduct({{0, 1}, {50, 100, 400, 1600, 6400}})->Unit(benchmark::kMicrosecond);

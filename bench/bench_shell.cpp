@@ -48,7 +48,7 @@ Setup fig8(double density, double duration) {
 void bm_step(benchmark::State& bench, bool conforming, int across, int along, double step_ms, double paper_ms) {
   const double h = step_ms * 1e-3, width = 1 / (2.5 * kPi);
   const double density = h * h / (kStep * std::pow(width, 4));
-  const int turning = 3000;
+  const int turning = 1200;
   const Setup setup = fig8(density, turning * h);
   const shell::Resolution resolution{along, across, shell::Diagonals::alternate};
   const shell::Shell model = conforming ? baseline::shell_conforming::make_shell(setup.strip, resolution)
@@ -83,7 +83,7 @@ void bm_step(benchmark::State& bench, bool conforming, int across, int along, do
   bench.counters["inexact"] = static_cast<double>(inexact) / steps;
 }
 
-#define WUNDERLICH_TABLE_2(...) BENCHMARK_CAPTURE(bm_step, __VA_ARGS__)->Unit(benchmark::kMillisecond)->Iterations(750)
+#define WUNDERLICH_TABLE_2(...) BENCHMARK_CAPTURE(bm_step, __VA_ARGS__)->Unit(benchmark::kMillisecond)->Iterations(300)
 
 WUNDERLICH_TABLE_2(conforming_12x36, true, 12, 36, 0.1, 52.48);
 WUNDERLICH_TABLE_2(conforming_4x36, true, 4, 36, 1.0, 15.71);

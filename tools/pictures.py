@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws docs/images/*.png: runs the shipped scenes and photographs the 3D view of their report pages.
 
-usage: tools/pictures.py [--program PATH] [SCENE...]     needs the distribution's chromium, which draws in software
+usage: tools/pictures.py [--program PATH] [--compare] [SCENE...]     needs the distribution's chromium, which draws in software
 """
 import argparse
 import json
@@ -27,6 +27,8 @@ MORE = {
     "whip": {"set": ["solver.duration=0.6"]},
 }
 
+COMPARED = ["twist-pi", "twist-2pi", "twist-and-shorten"]  # the paper's Fig. 8, and the case of other programs
+
 STAGE = """<style>
   .tools, .player, .legend, .top, .figures, .card, footer, #warnings { display: none !important }
   .stage, .view { position: fixed !important; inset: 0; width: 100vw !important; height: 100vh !important;
@@ -44,24 +46,45 @@ STAGE = """<style>
 
 def photograph(page: pathlib.Path, picture: pathlib.Path, keys: list[str]) -> None:
     text = page.read_text(encoding="utf-8").replace("<footer id=", STAGE % json.dumps(keys), 1)
+    shoot(page, text, picture, SIZE)
+
+
+def shoot(page: pathlib.Path, text: str, picture: pathlib.Path, size: tuple[int, int]) -> None:
     stage = page.with_name("stage.html")
     stage.write_text(text, encoding="utf-8")
     with tempfile.TemporaryDirectory() as profile:
         subprocess.run(
             ["chromium", "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
              "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-             "--hide-scrollbars", f"--user-data-dir={profile}", f"--window-size={SIZE[0]},{SIZE[1]}",
+             "--hide-scrollbars", f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}",
              "--virtual-time-budget=3000", f"--screenshot={picture}", stage.as_uri()],
             check=True, timeout=300, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def photograph_models(page: pathlib.Path, picture: pathlib.Path) -> None:
+    """The shapes of a comparison side by side, without the rest of its page."""
+    style = """<style>
+      body > *:not(.models) { display: none !important }
+      .models { display: grid !important; grid-template-columns: repeat(4, 1fr) !important; margin: 0 !important }
+    </style><footer id="""
+    shoot(page, page.read_text(encoding="utf-8").replace("<footer id=", style, 1), picture, (1400, 440))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "build/release/wunderlich"))
+    parser.add_argument("--compare", action="store_true", help="draw the comparisons of models instead")
     parser.add_argument("scenes", nargs="*")
     options = parser.parse_args()
     images = ROOT / "docs/images"
     images.mkdir(exist_ok=True)
+    if options.compare:
+        for scene in options.scenes or COMPARED:
+            with tempfile.TemporaryDirectory() as folder:
+                out = pathlib.Path(folder) / scene
+                subprocess.run([options.program, "compare", scene, "--out", str(out), "--quiet"], check=True)
+                photograph_models(out / "report.html", images / f"compare-{scene}.png")
+        return
     for scene in options.scenes or sorted(path.stem for path in (ROOT / "scenes").glob("*.yaml")):
         more = MORE.get(scene, {})
         with tempfile.TemporaryDirectory() as folder:

@@ -23,7 +23,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 from common import Row, Runner  # noqa: E402  (this folder has to be on the path first)
 
-CLAIMS = ["facets", "area", "dynamics-alpha", "moebius-profile", "coil", "belts", "taylor"]
+CLAIMS = ["facets", "area", "dynamics-alpha", "moebius-profile", "loop", "coil", "drape", "belts", "models", "taylor"]
 FIGURES_OF_DOCS = HERE.parent / "docs" / "images"
 
 

@@ -30,6 +30,7 @@ void print_table(const Comparison& comparison) {
 int exit_code(const Comparison& comparison) {
   int code = done;
   for (const ModelResult& m : comparison.models) {
+    for (const std::string& note : m.notes) std::cerr << fmt::format("note: {}: {}\n", m.model, note);
     if (m.converged) continue;
     std::cerr << fmt::format("{}: did not converge: {}; its last good state is written\n", m.model, m.failure);
     code = not_converged;
@@ -42,10 +43,10 @@ int exit_code(const Comparison& comparison) {
 int compare_command(const CompareArguments& arguments) {
   const std::vector<scene::Model> models = scene::parse_models(arguments.models);
   const scene::Scene scene = scene::read_scene(arguments.scene, arguments.set);
+  scene::check_comparable(scene);
   scene::check_start(scene);
-  const std::filesystem::path folder =
-      arguments.out.empty() ? std::filesystem::path("out") / (scene.name + "-compare")
-                            : std::filesystem::path(arguments.out);
+  const std::filesystem::path folder = arguments.out.empty() ? std::filesystem::path("out") / (scene.name + "-compare")
+                                                             : std::filesystem::path(arguments.out);
   io::require_replaceable(folder, io::is_comparison);
 
   catch_interrupts();

@@ -96,7 +96,8 @@ void add_compare(CLI::App& program, CompareArguments& arguments, int& exit_code)
   command->add_option("scene", arguments.scene, "A scene file, or the name of a shipped scene")
       ->required()
       ->type_name("SCENE");
-  command->add_option("--models", arguments.models, "Some of ribbon,rod,shell-conforming,shell-nonconforming; default all")
+  command
+      ->add_option("--models", arguments.models, "Some of ribbon,rod,shell-conforming,shell-nonconforming; default all")
       ->type_name("LIST");
   command->add_option("--out", arguments.out, "The folder; default out/<scene>-compare. A comparison there is replaced")
       ->type_name("DIR");

@@ -57,5 +57,16 @@ TEST(RodSurface, TwistedUnderTensionItIsAHelicoid) {
   }
 }
 
+TEST(RodSurface, TrianglesAreSeenFromTheSideOfTheirNormals) {
+  const Rod sample = rod::make_rod(fig8_spec(), rod::paper_ratio(fig8_spec()));
+  const Mesh mesh = rod::surface_mesh(sample, rod::straight_state(sample), 4);
+  ASSERT_EQ(mesh.triangles.size(), 35u * 4 * 2);
+  for (const auto& t : mesh.triangles) {
+    const auto point = [&](int k) { return mesh.points[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+    const Vec3 normal = (point(1) - point(0)).cross(point(2) - point(0));
+    EXPECT_GT(normal.dot(mesh.normals[static_cast<std::size_t>(t[0])]), 0);
+  }
+}
+
 }  // namespace
 }  // namespace wunderlich::testing

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "implicit/drops.hpp"
 #include "solver/paths.hpp"
+#include "wunderlich/solver/chain_contact.hpp"
 
 namespace wunderlich::testing {
 namespace {
@@ -139,6 +141,48 @@ TEST(Contact, NothingIsLeaptOver) {
   }
   EXPECT_GT(top, -0.1);  // it hangs over the rod ...
   EXPECT_LT(bottom, -0.2);
+}
+
+/// However far rulings lean: what is reported is a bound from below of a distance that is known, between points as
+/// well.
+TEST(Contact, FacetsAreClearBetweenPointsHoweverRulingsLean) {
+  geometry::RibbonSpec spec = sheet(1e-3, false);
+  spec.segments = 20;  // half as long as wide: rims shrink to nothing where rulings differ by 1
+  const geometry::Ribbon ribbon = geometry::make_ribbon(spec);
+  constraint::Surroundings surroundings;
+  const double d = surroundings.contact.distance = spec.width / 30;
+  surroundings.contact.thickness = 2e-4;
+  std::mt19937_64 engine(7);
+  const auto in = [&](double from, double to) {
+    return from + (to - from) * static_cast<double>(engine() >> 11) * 0x1p-53;
+  };
+  double worst = -1e9, least = 1e9;
+  for (int i = 0; i < 6000; ++i) {
+    const double lean = 2 * (i % 3), radius = std::exp(in(std::log(1e-3), std::log(0.1))), clear = 1e-3 * d;
+    geometry::Chain chain = geometry::straight_chain(ribbon, along_x(0, 0));
+    for (double& eta : chain.eta) eta = lean + in(-0.5, 0.5);
+    geometry::Kinematics k;
+    geometry::forward_kinematics(ribbon, chain, k);
+    // Above a point of the third facet, touching it but for `clear`; a rod is level.
+    const double f = in(0, 1), v = spec.width * in(-0.5, 0.5), eta = (1 - f) * chain.eta[2] + f * chain.eta[3];
+    const Vec3 point =
+        k.r[2] + f * ribbon.rest_length[2] * k.frame[2].col(2) + v * (k.frame[2].col(1) + eta * k.frame[2].col(2));
+    Pose pose = axis_y(0, 0, in(0, 3));
+    pose.position = point + (radius + surroundings.contact.thickness + clear) * k.frame[2].col(0);
+    const contact::Shape rod = contact::Capsule{radius, 0.1}, ball = contact::Sphere{radius};
+    surroundings.obstacles = {solid(i % 2 == 0 ? rod : ball, pose)};
+    solver::ContactProblem problem;
+    solver::place_solids(ribbon, surroundings, 0, problem);
+    solver::ContactPoints points;
+    solver::find_points(ribbon, problem, chain, k, points);
+    const double off = clear - smallest_distance(problem, points);
+    least = std::min(least, off);
+    if (lean == 0) worst = std::max(worst, off);
+  }
+  show("least distance over what is reported", least, 0);
+  show("the most, over the barrier's distance, rulings up to 1/2", worst / d, 2);
+  EXPECT_GE(least, -1e-12);
+  EXPECT_LT(worst, 2 * d);  // half of it where rims are as long as the strip; they are up to twice as long
 }
 
 /// A solid that moves pushes the strip along.

@@ -201,7 +201,7 @@ TEST(Drops, Random) {
   }
   std::printf("  seeds %d to %d: %d failed and said why\n", first, first + count - 1, failed);
   show("smallest distance in random drops [m]", nearest, 0);
-  EXPECT_LE(failed, 2 + count / 40);  // failing is allowed, but not often: 15 of 1000 did, which ones is up to rounding
+  EXPECT_LE(failed, 2 + count / 40);  // failing is allowed, but not often: 14 of 1000 did, which ones is up to rounding
 }
 
 }  // namespace

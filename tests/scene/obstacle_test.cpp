@@ -192,6 +192,7 @@ TEST(Obstacles, AllMethodsKnowThem) {
   EXPECT_EQ(message_of(floor + "solver: {method: two-stage}"), "accepted");
   EXPECT_EQ(message_of(floor + "solver: {method: implicit}"), "accepted");
   EXPECT_EQ(message_of(floor + "solver: {method: equilibrium}"), "accepted");
+  EXPECT_EQ(message_of(floor + "contact: {self: true, friction: 0.2}\nsolver: {method: two-stage}"), "accepted");
 }
 
 }  // namespace

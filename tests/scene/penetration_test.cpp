@@ -73,6 +73,7 @@ void expect_clear(const std::string& name, double until, double allowed, std::ve
   const Scene scene = read_scene(name, set);
   const RunResult result = run(scene, nullptr);
   ASSERT_EQ(result.outcome, Outcome::converged) << result.summary.failure;
+  ASSERT_GT(static_cast<int>(result.progress.records.size()), result.summary.steps) << "not every step was kept";
   const auto& obstacles = scene.surroundings.obstacles;
   ASSERT_TRUE(!obstacles.empty() || scene.surroundings.contact.self);
   Placed strips;

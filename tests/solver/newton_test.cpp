@@ -103,8 +103,8 @@ void add_solids(const Chain& chain, const Kinematics& k, ChainProblem& problem) 
   };
   solver::ContactProblem& contact = problem.contact;
   contact.solids = {{contact::HalfSpace{}, {chain.base.position - Vec3(0, 0, 4), Quat::Identity()}, 0},
-                    {contact::Sphere{1.2}, at(4, 1, 0), 0},
-                    {contact::Capsule{0.7, 3}, at(-4, 0, 1), 0}};
+                    {contact::Sphere{1.2}, at(4, 1, 0), 0, 20},
+                    {contact::Capsule{0.7, 3}, at(-4, 0, 1), 0, 30}};
   contact.distance = 5;
   contact.thickness = 0.1;
   contact.stiffness = 3;

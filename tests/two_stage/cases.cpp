@@ -46,7 +46,7 @@ Case cantilever(int segments, double tilt) {
 
 Case floating(int segments) { return sheet(segments, false); }
 
-Case loop(int segments, int half_twists) {
+Case loop(int segments, int half_twists, const constraint::Surroundings& surroundings) {
   geometry::RibbonSpec spec;
   spec.length = 2 * M_PI;
   spec.width = 0.4;
@@ -55,7 +55,9 @@ Case loop(int segments, int half_twists) {
   spec.half_twists = half_twists;
   Case c;
   c.ribbon = geometry::make_ribbon(spec);
-  const solver::PathProblem path = solver::make_path(c.ribbon, {}, {});
+  solver::PathOptions options;
+  if (surroundings.contact.self) options.loop_path = solver::LoopPath::twist;
+  const solver::PathProblem path = solver::make_path(c.ribbon, surroundings, options);
   solver::PathState at = solver::start_path(path);
   solver::NewtonWorkspace work;
   while (at.phase != solver::Phase::done && !solver::advance(path, at, work).exhausted) {

@@ -23,8 +23,9 @@ Case cantilever(int segments, double tilt);
 /// The same strip without supports and gravity.
 Case floating(int segments);
 
-/// A loop of length 2 pi and width 0.4 at its equilibrium, from the equilibrium solver.
-Case loop(int segments, int half_twists);
+/// A loop of length 2 pi and width 0.4 at its equilibrium, from the equilibrium solver; it feels itself where the
+/// surroundings say so.
+Case loop(int segments, int half_twists, const constraint::Surroundings& surroundings = {});
 
 /// Velocities that bend and turn a strip.
 void disturb(double speed, Case& c);

@@ -6,11 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "support/random_state.hpp"
-#include "two_stage/cases.hpp"
+#include "two_stage/drops.hpp"
 #include "wunderlich/math/rotation.hpp"
-#include "wunderlich/solver/two_stage/contact_rows.hpp"
-#include "wunderlich/solver/two_stage/objective.hpp"
 
 namespace wunderlich::testing {
 namespace {
@@ -18,57 +15,6 @@ namespace {
 using two_stage::Projection;
 using two_stage::Row;
 using two_stage::Vec7;
-
-constexpr double kGravity = 9.81;
-constexpr double kWidth = 0.03;
-
-void show(const char* name, double measured, double asked) {
-  std::printf("  %-55s %.4g (asked: %.3g)\n", name, measured, asked);
-}
-
-double along(const Row& row, const std::vector<Vec7>& motion) {
-  double sum = 0;
-  for (std::size_t slot = 0; slot < 3; ++slot) {
-    if (row.block[slot] < 0) continue;
-    sum += row.slope.col(static_cast<Eigen::Index>(slot)).dot(motion[static_cast<std::size_t>(row.block[slot])]);
-  }
-  return sum;
-}
-
-/// A ribbon off its constraints, and a motion of all that is not held.
-struct Loose {
-  geometry::Ribbon ribbon;
-  two_stage::Options options;
-  geometry::State shape;
-  two_stage::Workspace work;
-  std::vector<Vec7> motion;
-};
-
-Loose loose(const geometry::Ribbon& ribbon, std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  Loose l{ribbon, {}, random_state(ribbon, random), {}, {}};
-  if (ribbon.is_loop()) {
-    l.shape.r.back() = l.shape.r.front();
-    for (double& eta : l.shape.eta) eta *= 0.3;
-    l.shape.eta.back() = ribbon.seam_sign() * l.shape.eta.front();
-  }
-  prepare(l.options, ribbon, {}, l.shape, l.work);
-  two_stage::set_metric(ribbon, l.options, 1e-3, l.work);
-  l.motion.assign(static_cast<std::size_t>(two_stage::block_count(ribbon)), Vec7::Zero());
-  for (std::size_t b = 0; b < l.motion.size(); ++b) {
-    for (int k = 0; k < 7; ++k) {
-      const double unit = k < 3 ? ribbon.rest_length.front() : 1;
-      if (l.work.equations.inverse_metric[b][k] > 0) l.motion[b][k] = unit * normal(random);
-    }
-  }
-  return l;
-}
-
-geometry::State moved(double h, Loose& l) {
-  geometry::State out = l.shape;
-  two_stage::move_all(l.ribbon, l.motion, h, l.work, out);
-  return out;
-}
 
 TEST(TwoStageContact, EquationsAreDerivatives) {
   std::mt19937 random(11);
@@ -106,11 +52,13 @@ TEST(TwoStageContact, RowsOfPointsAndBoundsAreDerivatives) {
       const two_stage::Place place{s, 0.3, 0.4 * l.ribbon.width};
       const double eta = two_stage::eta_at(l.shape, place);
       Row row;
-      two_stage::point_row(l.ribbon, l.shape, place, eta, direction, true, l.work, row);
+      row = Row();
+      two_stage::add_point(l.ribbon, l.shape, place, eta, direction, true, l.work, row);
       const Vec3 way = two_stage::place_of(plus, place) - two_stage::place_of(minus, place);
       EXPECT_NEAR(along(row, l.motion), direction.dot(way) / (2 * h), 1e-5 * size);
       EXPECT_GT(row.slope.cwiseAbs().maxCoeff(), 0.1);
-      two_stage::point_row(l.ribbon, l.shape, place, eta, direction, false, l.work, row);
+      row = Row();
+      two_stage::add_point(l.ribbon, l.shape, place, eta, direction, false, l.work, row);
       const Vec3 carried = two_stage::material_place(plus, place, eta) - two_stage::material_place(minus, place, eta);
       EXPECT_NEAR(along(row, l.motion), direction.dot(carried) / (2 * h), 1e-5 * size);
       Row after, before;
@@ -167,103 +115,8 @@ TEST(TwoStageContact, ConesFulfilTheirConditions) {
   EXPECT_GT(open, 20);
 }
 
-/// A strip of 0.3 m x 30 mm, 0.1 kg/m^2 among solids.
-struct Drop {
-  Case c;
-  constraint::Surroundings surroundings;
-  double nearest = 1e9;  ///< smallest distance of facets to solids, beyond the thickness, by the test's own points
-  long sweeps = 0;
-  int halvings = 0;
-};
-
-constraint::Obstacle solid(const contact::Shape& shape, const Pose& pose, double friction = 0) {
-  constraint::Obstacle obstacle;
-  obstacle.shape = shape;
-  obstacle.friction = friction;
-  obstacle.motion.keys = {{0, pose, 0}};
-  return obstacle;
-}
-
-void place(const Pose& base, Drop& d) {
-  for (Vec3& r : d.c.state.shape.r) r = base.position + base.frame * r;
-  for (Quat& q : d.c.state.shape.q) q = base.frame * q;
-  for (Quat& q : d.c.state.shape.end_frame) q = base.frame * q;
-}
-
-Drop drop(double bending_stiffness, int segments, const std::vector<constraint::Obstacle>& solids,
-          const Vec3& gravity) {
-  Drop d;
-  geometry::RibbonSpec spec;
-  spec.length = 0.3;
-  spec.width = kWidth;
-  spec.segments = segments;
-  spec.bending_stiffness = bending_stiffness;
-  spec.area_density = 0.1;
-  d.c.ribbon = geometry::make_ribbon(spec);
-  d.c.state = two_stage::start(d.c.ribbon, geometry::straight_state(d.c.ribbon));
-  d.c.drive.gravity = gravity;
-  d.surroundings.obstacles = solids;
-  d.surroundings.contact.distance = kWidth / 30;
-  return d;
-}
-
 Pose axis_y(double x, double z, double turn) {
   return {Vec3(x, 0, z), math::exp_map(Vec3(0, 0, turn)) * math::exp_map(Vec3(-std::acos(0.0), 0, 0))};
-}
-
-/// Smallest distance of many points of each facet.
-double clearance(const Drop& d) {
-  const geometry::State& shape = d.c.state.shape;
-  double least = 1e9;
-  constexpr int kFine = 16;
-  for (const constraint::Obstacle& obstacle : d.surroundings.obstacles) {
-    const Pose pose = constraint::pose_at(obstacle.motion, shape.time);
-    for (std::size_t s = 0; s < shape.q.size(); ++s) {
-      const Mat3 frame = shape.q[s].toRotationMatrix();
-      const auto at = [&](std::size_t node, double v) -> Vec3 {
-        return shape.r[node] + v * (frame.col(1) + shape.eta[node] * frame.col(2));
-      };
-      const Vec3 middle = 0.5 * (shape.r[s] + shape.r[s + 1]);
-      if (contact::distance(obstacle.shape, pose, middle).value > 2 * kWidth) continue;
-      for (int k = 0; k <= kFine; ++k) {
-        const double v = kWidth * (static_cast<double>(k) / kFine - 0.5);
-        for (int i = 0; i <= kFine; ++i) {
-          const double f = static_cast<double>(i) / kFine;
-          const Vec3 point = (1 - f) * at(s, v) + f * at(s + 1, v);
-          least = std::min(least, contact::distance(obstacle.shape, pose, point).value);
-        }
-      }
-    }
-  }
-  return least - d.surroundings.contact.thickness;
-}
-
-/// One step; one that fails says why and is tried again in halves, as runs do.
-bool advance(double dt, int halvings, Drop& d, two_stage::StepReport& report) {
-  report = two_stage::step(d.c.ribbon, d.c.drive, d.c.options, dt, d.c.state, d.c.work);
-  d.sweeps += report.contact_sweeps;
-  if (report.accepted) {
-    EXPECT_EQ(report.contact_unsettled, 0) << d.c.state.shape.time;
-    EXPECT_GT(report.nearest, -0.01 * kWidth);
-    return true;
-  }
-  EXPECT_FALSE(report.failure.empty());
-  ++d.halvings;
-  return halvings < 6 && advance(0.5 * dt, halvings + 1, d, report) && advance(0.5 * dt, halvings + 1, d, report);
-}
-
-/// Goes on for `duration`; looks at the facets every `look` steps. Returns the last report.
-two_stage::StepReport go(double duration, double dt, int look, Drop& d) {
-  d.c.drive.surroundings = &d.surroundings;
-  two_stage::StepReport report;
-  const long steps = std::lround(duration / dt);
-  for (long k = 1; k <= steps; ++k) {
-    const bool done = advance(dt, 0, d, report);
-    EXPECT_TRUE(done) << report.failure << " at " << d.c.state.shape.time;
-    if (!done) break;
-    if (k % look == 0) d.nearest = std::min(d.nearest, clearance(d));
-  }
-  return report;
 }
 
 TEST(TwoStageContact, ADrapeStaysOut) {

@@ -23,23 +23,24 @@ struct ModelResult {
   std::string method;      ///< equilibrium, implicit, two-stage, implicit-euler
   std::string resolution;  ///< "35 segments", "36 x 4 vertices"
   bool converged = false;
-  std::string failure;  ///< why it did not converge; empty when it did
-  int unknowns = 0;     ///< scalars that are solved for
-  int constraints = 0;  ///< scalar equations that hold them together, supports left out
+  std::string failure;             ///< why it did not converge; empty when it did
+  std::vector<std::string> notes;  ///< what a reader of the figures should know
+  int unknowns = 0;                ///< scalars that are solved for
+  int constraints = 0;             ///< scalar equations that hold them together, supports left out
   Energies energy;
   IsometryErrors isometry;
   long steps = 0;
-  double step_us = 0;         ///< median of a step
-  double iterations = 0;      ///< mean of a step
-  double wall_seconds = 0;    ///< of all steps
-  double moved_seconds = 0;   ///< time that the motion took in the model's world; 0: a path of equilibria
+  double step_us = 0;        ///< median of a step
+  double iterations = 0;     ///< mean of a step
+  double wall_seconds = 0;   ///< of all steps
+  double moved_seconds = 0;  ///< time that the motion took in the model's world; 0: a path of equilibria
   std::vector<std::pair<std::string, double>> phases_us;  ///< parts of a step, means
-  std::vector<Frame> frames;  ///< at least one; centerlines may be empty
+  std::vector<Frame> frames;                              ///< at least one; centerlines may be empty
 };
 
 struct Comparison {
   std::string scene, title;
-  std::string scene_text;          ///< after all overrides
+  std::string scene_text;  ///< after all overrides
   std::vector<ModelResult> models;
   std::vector<std::vector<Body>> bodies;  ///< obstacles at each model's frames
 };

@@ -9,8 +9,8 @@
 
 namespace wunderlich::geometry {
 
-/// A strip's surface as a grid of material points: column i of `along + 1`, row j of `across + 1`, at i (across + 1) + j;
-/// rows run along the strip, the first and the last are its rims. Between its points it is two triangles a cell.
+/// A strip's surface as a grid of material points: column i of `along + 1`, row j of `across + 1`, at i (across + 1) +
+/// j; rows run along the strip, the first and the last are its rims. Between its points it is two triangles a cell.
 struct StripGrid {
   int along = 0;
   int across = 0;

@@ -59,6 +59,7 @@ Json model_json(const ModelResult& model) {
   for (const Column& column : columns) out[column.name] = finite(column.value(model), model, column.name);
   out["converged"] = model.converged;
   if (!model.failure.empty()) out["failure"] = model.failure;
+  if (!model.notes.empty()) out["notes"] = model.notes;
   for (const auto& [name, us] : model.phases_us) out["phases_us"][name] = us;
   return out;
 }
@@ -93,7 +94,8 @@ Json shapes_json(const ModelResult& model, const std::vector<Body>& bodies) {
   out["bodies"] = Json::array();
   for (const Body& body : bodies) {
     std::vector<Pose> poses;
-    for (const Frame* frame : frames) poses.push_back(body.poses[static_cast<std::size_t>(frame - model.frames.data())]);
+    for (const Frame* frame : frames)
+      poses.push_back(body.poses[static_cast<std::size_t>(frame - model.frames.data())]);
     out["bodies"].push_back(body_json(body.mesh, poses));
   }
   return out;
@@ -120,12 +122,8 @@ std::string comparison_json(const Comparison& comparison) {
 }
 
 std::string comparison_page(const Comparison& comparison, std::string_view page) {
-  Json data = {{"scene", comparison.scene},
-               {"title", comparison.title},
-               {"text", comparison.scene_text},
-               {"program", program},
-               {"version", version},
-               {"models", Json::array()}};
+  Json data = {{"scene", comparison.scene}, {"title", comparison.title}, {"text", comparison.scene_text},
+               {"program", program},        {"version", version},        {"models", Json::array()}};
   for (std::size_t i = 0; i < comparison.models.size(); ++i) {
     data["models"].push_back(shapes_json(comparison.models[i], comparison.bodies[i]));
   }

@@ -91,7 +91,8 @@ void require_replaceable(const fs::path& folder, FolderKind kind) {
     const bool empty = fs::is_empty(target, error);
     if (error) fail(folder, "cannot be read: " + error.message());
     if (!empty && !kind(target)) {
-      fail(folder, "exists and was not written by wunderlich; only a folder that it wrote is replaced, choose another --out");
+      fail(folder,
+           "exists and was not written by wunderlich; only a folder that it wrote is replaced, choose another --out");
     }
   }
   fs::create_directories(target.parent_path(), error);

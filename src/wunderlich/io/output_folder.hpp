@@ -22,8 +22,8 @@ using FolderWriter = std::function<void(const std::vector<RenderedFile>& files)>
 void require_replaceable(const std::filesystem::path& folder, FolderKind kind);
 
 /// What `fill` writes becomes the folder when it is complete; one of the kind that was there is replaced. Throws
-/// InputError as `require_replaceable` does, or if a disk is full; what `fill` throws goes on. In either case nothing is
-/// left behind.
+/// InputError as `require_replaceable` does, or if a disk is full; what `fill` throws goes on. In either case nothing
+/// is left behind.
 void write_whole_folder(const std::filesystem::path& folder, FolderKind kind,
                         const std::function<void(const FolderWriter& write)>& fill);
 

@@ -136,7 +136,8 @@ Json report_json(const RunOutput& output) {
   data["bodies"] = Json::array();
   for (const Body& body : output.bodies) {
     std::vector<Pose> poses;
-    for (const Frame* frame : frames) poses.push_back(body.poses[static_cast<std::size_t>(frame - output.frames.data())]);
+    for (const Frame* frame : frames)
+      poses.push_back(body.poses[static_cast<std::size_t>(frame - output.frames.data())]);
     data["bodies"].push_back(body_json(body.mesh, poses));
   }
   data["u"] = column(frames.front()->centerline,
@@ -150,8 +151,7 @@ Json report_json(const RunOutput& output) {
 
 std::string report_page(const RunOutput& output) {
   assert(!output.frames.empty());
-  return filled_page(output.report_template,
-                     report_json(output).dump(-1, ' ', false, Json::error_handler_t::replace));
+  return filled_page(output.report_template, report_json(output).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace wunderlich::io

@@ -108,14 +108,16 @@ bool solve(SparseWorkspace& work) {
   constexpr int kMostPasses = 3;
   const auto matrix = work.matrix.lower().selfadjointView<Eigen::Lower>();
   const double size = work.right.norm();
-  work.solution = work.factor.solve(work.right);
+  work.solution = work.right;
+  solve(work.factor, work.solution);
   for (int pass = 0;; ++pass) {
     work.rest = work.right;
     work.rest.noalias() -= matrix * work.solution;
     const double rest = work.rest.norm();
     if (rest <= kExact * size) return true;
     if (pass == kMostPasses || !(rest < std::numeric_limits<double>::infinity())) return rest <= kUseful * size;
-    work.solution += work.factor.solve(work.rest);
+    solve(work.factor, work.rest);
+    work.solution += work.rest;
   }
 }
 
@@ -169,16 +171,13 @@ bool sparse_chain_steps(Parts parts, const Couplings& between) {
   assemble(parts, between, work);
   if (!known) {
     work.matrix.settle();
-    work.factor.analyzePattern(work.matrix.lower());
+    analyse(work.matrix.lower(), work.factor);
   }
-  work.factor.factorize(work.matrix.lower());
-  if (work.factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd pivots = work.factor.vectorD();
-  if (!pivots.allFinite() || !solve(work)) return false;
+  if (!factorise(work.matrix.lower(), work.factor) || !solve(work)) return false;
   for (std::size_t c = 0; c < parts.size(); ++c) {
     assert(parts[c].system->probe_count() == 0);
     read_step(*parts[c].system, work.chains[c], work.solution, *parts[c].step);
-    parts[c].step->negative_pivots = c == 0 ? count_negative(parts, pivots) : 0;
+    parts[c].step->negative_pivots = c == 0 ? count_negative(parts, work.factor.pivots) : 0;
   }
   return true;
 }

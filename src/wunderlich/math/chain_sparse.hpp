@@ -4,9 +4,9 @@
 /// multipliers: the matrix is a band with a few blocks off it, one for each pair of links that touch.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <vector>
 
+#include "wunderlich/math/block_ldlt.hpp"
 #include "wunderlich/math/chain_sweep.hpp"
 #include "wunderlich/math/repeated_matrix.hpp"
 
@@ -42,7 +42,7 @@ struct SparseWorkspace {
   int size = 0;
   std::vector<char> fixed;
   RepeatedMatrix matrix;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor;
+  BlockFactor factor;
   Eigen::VectorXd right, solution, rest;
 };
 

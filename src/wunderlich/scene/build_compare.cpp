@@ -16,7 +16,7 @@ CompareOptions::Shell shell_of(const Cell& cell, double time_step) {
 }  // namespace
 
 CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbon, const SolverOptions& solver) {
-  constexpr double kLoadTime = 2, kStepsOfLoad = 2000, kDamping = 20, kThin = 0.01;
+  constexpr double kLoadTime = 2, kStepsOfLoad = 2000, kDamping = 20, kSettle = 10, kThin = 0.01;
   const Cell cell = child(root, "compare"), rod = child(cell, "rod"), strip = child(root, "ribbon");
   const bool path = solver.method == Method::equilibrium;
   CompareOptions options;
@@ -28,13 +28,11 @@ CompareOptions build_compare(const Cell& root, const geometry::RibbonSpec& ribbo
   options.length_tolerance = number(child(cell, "length_tolerance"));
   const double wave = std::sqrt(ribbon.area_density / ribbon.bending_stiffness) * ribbon.length * ribbon.length;
   options.load_time = number_or(child(cell, "load_time"), kLoadTime * wave);
-  options.settle_time = number_or(child(cell, "settle_time"), options.load_time);
-  options.time_step =
-      number_or(child(cell, "time_step"), path ? options.load_time / kStepsOfLoad : solver.time_step);
+  options.settle_time = number_or(child(cell, "settle_time"), kSettle * options.load_time);
+  options.time_step = number_or(child(cell, "time_step"), path ? options.load_time / kStepsOfLoad : solver.time_step);
   options.damping =
       number_or(child(cell, "damping"),
-                path ? kDamping / options.load_time
-                     : number(child(child(child(root, "solver"), "damping"), "normal")));
+                path ? kDamping / options.load_time : number(child(child(child(root, "solver"), "damping"), "normal")));
   options.conforming = shell_of(child(cell, "shell_conforming"), options.time_step);
   options.nonconforming = shell_of(child(cell, "shell_nonconforming"), options.time_step);
   return options;

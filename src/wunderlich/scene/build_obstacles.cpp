@@ -108,15 +108,10 @@ std::vector<Obstacle> build_obstacles(const Cell& root, int segments) {
   if (pairs > kMostPairs) {
     fail(list, fmt::format("{} pairs of obstacles and segments; at most {} fit into memory", pairs, kMostPairs));
   }
-  const bool two_stage = method_of(root) == Method::two_stage;
   const bool equilibrium = method_of(root) == Method::equilibrium;
   std::vector<Obstacle> obstacles;
   for (std::size_t i = 0; i < count(list); ++i) {
     obstacles.push_back(obstacle_of(element(list, i), child(root, "contact")));
-    if (two_stage && std::holds_alternative<contact::Polyhedron>(obstacles.back().shape)) {
-      fail(element(list, i),
-           "meshes are not for `solver.method: two-stage`, which wants convex solids; use `implicit`");
-    }
     if (equilibrium && obstacles.back().friction > 0) {
       fail(element(list, i), "friction has no effect with `solver.method: equilibrium`; use `implicit`");
     }
@@ -127,9 +122,6 @@ std::vector<Obstacle> build_obstacles(const Cell& root, int segments) {
 constraint::Contact build_contact(const Cell& root, double width) {
   const Cell cell = child(root, "contact");
   const Cell self = child(cell, "self");
-  if (boolean(self) && method_of(root) == Method::two_stage) {
-    fail(self, "not with `solver.method: two-stage`; use `implicit`");
-  }
   if (cell.value != nullptr && count(child(root, "obstacles")) == 0 && !boolean(self)) {
     fail(cell, "has no effect without `obstacles` or `contact.self: true`");
   }

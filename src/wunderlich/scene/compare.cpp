@@ -22,7 +22,7 @@ void count_ribbon(const Scene& scene, ModelResult& result) {
   const int n = scene.ribbon.segments;
   if (scene.solver.method == Method::two_stage) {
     result.unknowns = 3 * (n + 1) + 3 * n + (n + 1);  // positions, turns of frames, rulings   @eq Shen2015:7
-    result.constraints = 4 * n;                       // length, binormal, torsion match, ruling bound   @eq Shen2015:6.6
+    result.constraints = 4 * n;  // length, binormal, torsion match, ruling bound   @eq Shen2015:6.6
     return;
   }
   result.unknowns = 2 * n + 6;  // curvature and ruling of each hinge, and the first pose
@@ -93,8 +93,12 @@ ModelResult run_model(const Scene& scene, Model model, const Observer& observer)
   return run_shell(scene, model, named);
 }
 
+void check_comparable(const Scene& scene) {
+  if (!scene.beside.empty())
+    throw InputError(scene.name + ": models are compared on one strip; this scene has several");
+}
+
 Comparison compare(const Scene& scene, const std::vector<Model>& models, const Observer& observer) {
-  if (!scene.beside.empty()) throw InputError(scene.name + ": models are compared on one strip; this scene has several");
   Comparison comparison{scene.name, scene.title, scene.resolved, {}, {}};
   for (const Model model : models) {
     comparison.models.push_back(run_model(scene, model, observer));

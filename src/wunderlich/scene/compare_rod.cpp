@@ -28,8 +28,8 @@ geometry::RibbonSpec spec_of(const Scene& scene) {
 rod::Rod rod_of(const Scene& scene) {
   const geometry::RibbonSpec spec = spec_of(scene);
   const CompareOptions& c = scene.compare;
-  return rod::make_rod(
-      spec, c.paper_ratio ? rod::paper_ratio(spec) : rod::physical(spec, c.poisson_ratio, c.thickness));
+  return rod::make_rod(spec,
+                       c.paper_ratio ? rod::paper_ratio(spec) : rod::physical(spec, c.poisson_ratio, c.thickness));
 }
 
 geometry::StripGrid grid_of(const rod::Rod& rod, const rod::State& state) {
@@ -48,7 +48,8 @@ struct Run {
       : scene(s), rod(rod_of(s)), log(s, Model::rod, s.solver.duration, observer) {
     path = scene.solver.method == Method::equilibrium;
     surroundings = scene.surroundings;
-    if (rod.segments != scene.ribbon.segments) failure = "supports by node: give the rod as many segments as the ribbon";
+    if (rod.segments != scene.ribbon.segments)
+      failure = "supports by node: give the rod as many segments as the ribbon";
   }
 
   const Scene& scene;
@@ -90,8 +91,8 @@ struct Run {
 
   bool go() {
     const double duration = scene.solver.duration;
-    const double step = path ? duration / (scene.solver.steps > 0 ? scene.solver.steps : kLoadSteps)
-                             : scene.compare.time_step;
+    const double step =
+        path ? duration / (scene.solver.steps > 0 ? scene.solver.steps : kLoadSteps) : scene.compare.time_step;
     const long steps = std::lround(std::ceil(duration / step - 1e-9));
     log.frame(state.time, rod::surface_mesh(rod, state, scene.output.across));
     for (long k = path ? 0 : 1; k <= steps; ++k) {  // a path has its supports and loads of time 0 to find first

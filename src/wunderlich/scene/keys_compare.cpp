@@ -5,7 +5,14 @@ namespace wunderlich::scene {
 namespace {
 
 const std::vector<Key> table = {
-    {"compare", Type::map, "", 0, 0, "", {}, "How the models beside the ribbon are built; `wunderlich compare` reads it."},
+    {"compare",
+     Type::map,
+     "",
+     0,
+     0,
+     "",
+     {},
+     "How the models beside the ribbon are built; `wunderlich compare` reads it."},
     {"compare.rod", Type::map, "", 0, 0, "", {}, "The discrete elastic rod."},
     {"compare.rod.segments", Type::integer, "", 3, 1e5, "", {}, "Its edges. Default: the ribbon's segments."},
     {"compare.rod.stiffness",
@@ -15,7 +22,8 @@ const std::vector<Key> table = {
      0,
      "physical",
      {"physical", "ratio"},
-     "`physical`: of a rectangular section of `compare.thickness`. `ratio`: bending in the strip's plane, across it and "
+     "`physical`: of a rectangular section of `compare.thickness`. `ratio`: bending in the strip's plane, across it "
+     "and "
      "twist as 10^4 : 1 : 2, the paper's."},
     {"compare.shell_conforming", Type::map, "", 0, 0, "", {}, "The shell on vertices."},
     {"compare.shell_conforming.along", Type::integer, "", 3, 1e4, "36", {}, "Vertices along the strip."},
@@ -56,7 +64,8 @@ const std::vector<Key> table = {
      1000,
      "",
      {},
-     "Of the rod and the shells in a motion. Default: `solver.time_step`; for a path of loads, `compare.load_time`/2000."},
+     "Of the rod and the shells in a motion. Default: `solver.time_step`; for a path of loads, "
+     "`compare.load_time`/2000."},
     {"compare.load_time",
      Type::number,
      "s",
@@ -73,7 +82,7 @@ const std::vector<Key> table = {
      1e9,
      "",
      {},
-     "And so long it may move on until it is at rest. Default: `compare.load_time`."},
+     "And so long it may move on until it is at rest. Default: 10 `compare.load_time`."},
     {"compare.damping",
      Type::number,
      "1/s",
@@ -81,7 +90,8 @@ const std::vector<Key> table = {
      1e6,
      "",
      {},
-     "Rate at which velocities decay meanwhile. Default: 20/`compare.load_time`; in a motion, `solver.damping.normal`."},
+     "Rate at which velocities decay meanwhile. Default: 20/`compare.load_time`; in a motion, "
+     "`solver.damping.normal`."},
 };
 
 }  // namespace

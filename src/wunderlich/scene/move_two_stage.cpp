@@ -20,8 +20,8 @@ struct Counters {
   double substeps = 0;
   double exceeded = 0;   ///< steps beyond the stability bound
   double unsettled = 0;  ///< substeps whose contacts stopped short of the tolerance
-  double touching = 0;   ///< points of the strip that solids push
-  double nearest = 1e9;  ///< smallest distance to a solid [m]
+  double touching = 0;   ///< points and pairs that push
+  double nearest = 1e9;  ///< smallest distance to what is touched [m]
 };
 
 template <class Counters, class State, class Visit>
@@ -61,7 +61,7 @@ class TwoStageMover : public Mover {
         two_stage::step(ribbon_, drive, scene_.solver.two_stage, t1 - t0, state_, work_);
     recording.add_phase_time("ode", report.ode_seconds);
     recording.add_phase_time("opt", report.opt_seconds);
-    if (!scene_.surroundings.obstacles.empty()) recording.add_phase_time("contact", report.contact_seconds);
+    if (may_touch()) recording.add_phase_time("contact", report.contact_seconds);
     recording.add_phase_time("other", report.other_seconds);
     stable_step_ = report.stable_step;
     if (!report.accepted) return {false, 0, report.failure};
@@ -89,7 +89,7 @@ class TwoStageMover : public Mover {
   double kinetic_energy() const override { return energy::kinetic_value(ribbon_, state_.shape); }
 
   void add_findings(Summary& summary) const override {
-    if (!scene_.surroundings.obstacles.empty()) {
+    if (may_touch()) {
       const double nearest = counters_.nearest;
       summary.contact = ContactSummary{static_cast<int>(counters_.touching), std::max(0.0, -nearest), nearest};
     }
@@ -129,6 +129,8 @@ class TwoStageMover : public Mover {
   }
 
  private:
+  bool may_touch() const { return !scene_.surroundings.obstacles.empty() || scene_.surroundings.contact.self; }
+
   const Scene& scene_;
   geometry::Ribbon ribbon_;
   two_stage::State state_;

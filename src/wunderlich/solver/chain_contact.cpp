@@ -17,26 +17,29 @@ namespace {
 
 constexpr double kStiffness = 100;   // barrier over weight or bending: light contact, few iterations
 constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
-constexpr int kMostCells = 12;       // across a strip, and along a segment
+constexpr int kMostCells = 100;      // across a strip, and along a segment; coarser ones keep more
+constexpr double kRoom = 0.5;        // of the distance at which forces begin: what points keep ...
+constexpr double kLean = 0.35;       // ... where rulings lean by so much
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double smallest_radius(const contact::Shape& shape) {
+double radius_of(const contact::Shape& shape) {
   if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return sphere->radius;
   if (const auto* cylinder = std::get_if<contact::Cylinder>(&shape)) return cylinder->radius;
   if (const auto* capsule = std::get_if<contact::Capsule>(&shape)) return capsule->radius;
   return kInfinity;
 }
 
-/// A segment's points are rows along rulings; the ruling at its start belongs to the segment before, if there is one.
-int first_row(std::size_t segment) { return segment == 0 ? 0 : 1; }
+/// Rows of points are along rulings. Beside planes a ruling's points belong to the segment before alone; beside what is
+/// round both keep what they need.
+int first_row(const ContactFacet& facet, std::size_t segment) { return segment == 0 || facet.sag[0] > 0 ? 0 : 1; }
 
 /// Length along the strip that a row stands for, trapezoidal.
-double row_length(const Ribbon& ribbon, const ContactProblem& problem, std::size_t segment, int row) {
-  const double own = ribbon.rest_length[segment];
-  const bool last = segment + 1 == ribbon.rest_length.size();
-  double length = own;
-  if (row == 0) length = 0.5 * own;
-  if (row == problem.along) length = 0.5 * (own + (last ? 0 : ribbon.rest_length[segment + 1]));
+double row_length(const Ribbon& ribbon, const ContactProblem& problem, const ContactFacet& facet, std::size_t segment,
+                  int row) {
+  const bool shared = segment + 1 < ribbon.rest_length.size() && first_row(facet, segment + 1) == 1;
+  double length = facet.length;
+  if (row == 0) length = 0.5 * facet.length;
+  if (row == problem.along) length = 0.5 * (facet.length + (shared ? ribbon.rest_length[segment + 1] : 0));
   return length / problem.along;
 }
 
@@ -47,14 +50,23 @@ double across_at(const ContactProblem& problem, int column) {
 }
 
 /// The facet of a segment in a solid's own frame; whether it is near is still to be found.
-ContactFacet facet_of(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t s, const Mat3& to_own,
-                      const Vec3& origin) {
+ContactFacet facet_of(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
+                      std::size_t s, std::size_t solid, const Mat3& to_own) {
   ContactFacet facet;
   const Vec3 d2 = to_own * k.frame[s].col(1), d3 = to_own * k.frame[s].col(2);
-  facet.start = to_own * (k.r[s] - origin);
+  facet.start = to_own * (k.r[s] - problem.solids[solid].pose.position);
   facet.along = ribbon.rest_length[s] * d3;
   facet.across[0] = d2 + chain.eta[s] * d3;
   facet.across[1] = d2 + chain.eta[s + 1] * d3;
+  facet.length = ribbon.rest_length[s];
+  facet.eta[0] = chain.eta[s], facet.eta[1] = chain.eta[s + 1];
+  facet.sag[0] = problem.solids[solid].sag / (problem.along * problem.along);
+  const double across = problem.width / problem.across;
+  facet.sag[1] = problem.solids[solid].sag * across * across;
+  // Convex along the strip and across it: the most is at a corner.
+  const double half = 0.5 * problem.width;
+  facet.kept = problem.thickness + std::max(std::max(facet.margin(0, -half), facet.margin(0, half)),
+                                            std::max(facet.margin(1, -half), facet.margin(1, half)));
   facet.gap = facet.least = 0;
   facet.near = false;
   facet.first = 0;
@@ -74,11 +86,12 @@ void look_at(const Ribbon& ribbon, const ContactProblem& problem, const contact:
   ContactFacet& facet = points.facets[index];
   facet.near = true;
   facet.first = points.at.size();
-  const std::size_t count = static_cast<std::size_t>((problem.along + 1 - first_row(s)) * (problem.across + 1));
+  const int first = first_row(facet, s);
+  const std::size_t count = static_cast<std::size_t>((problem.along + 1 - first) * (problem.across + 1));
   const std::size_t end = facet.first + count;
   points.at.resize(end);
   Vec3* at = points.at.data() + facet.first;
-  for (int i = first_row(s); i <= problem.along; ++i) {
+  for (int i = first; i <= problem.along; ++i) {
     const double f = share_of(problem, i);
     const Vec3 node = facet.start + f * facet.along;
     const Vec3 ruling = (1 - f) * facet.across[0] + f * facet.across[1];
@@ -88,33 +101,34 @@ void look_at(const Ribbon& ribbon, const ContactProblem& problem, const contact:
   points.normal.resize(end);
   contact::distances(shape, count, points.at.data() + facet.first, points.gap.data() + facet.first,
                      points.normal.data() + facet.first);
-  const double kept = problem.thickness + problem.margin;
   const double cell = problem.width / problem.across;
   std::size_t point = facet.first;
   facet.least = kInfinity;
-  for (int i = first_row(s); i <= problem.along; ++i) {
+  for (int i = first; i <= problem.along; ++i) {
     for (int k = 0; k <= problem.across; ++k, ++point) {
-      const double gap = points.gap[point] -= kept;
+      const double gap = points.gap[point] -=
+          problem.thickness + facet.margin(share_of(problem, i), across_at(problem, k));
       facet.least = std::min(facet.least, gap);
       if (gap >= problem.distance) continue;
-      const double area = (k == 0 || k == problem.across ? 0.5 : 1) * cell * row_length(ribbon, problem, s, i);
+      const double area = (k == 0 || k == problem.across ? 0.5 : 1) * cell * row_length(ribbon, problem, facet, s, i);
       points.touches.push_back({index, point, share_of(problem, i), across_at(problem, k), area,
                                 gap > 0 ? std::log(gap / problem.distance) : -kInfinity});
     }
   }
 }
 
-/// Where a point is, with the solid's normal and its gap there.
+/// Where a point is, with the solid's normal, its gap there and what it keeps.
 struct Beside {
   Vec3 at, normal;
-  double gap;
+  double gap, kept;
 };
 
 /// The least that the distance to a convex solid can be on a straight way: it is convex, above its tangents at the
-/// ends.
+/// ends. What is kept on the way is at most what is between what is kept there: squares of lengths are convex, too.
 inline double lowest_on_way(const Beside& a, const Beside& b) {
   const Vec3 way = b.at - a.at;
-  const double down = a.normal.dot(way), up = b.normal.dot(way), least = std::min(a.gap, b.gap);
+  const double more = b.kept - a.kept, least = std::min(a.gap, b.gap);
+  const double down = a.normal.dot(way) - more, up = b.normal.dot(way) - more;
   if (down >= 0 || up <= 0) return least;
   return std::min(least, a.gap + down * (a.gap - b.gap + up) / (up - down));
 }
@@ -123,10 +137,21 @@ inline double lowest_on_way(const Beside& a, const Beside& b) {
 inline Beside point_of(const ContactProblem& problem, const contact::Shape& shape, const ContactPoints& points,
                        const ContactFacet& facet, std::size_t offset, double f, double v) {
   const std::size_t i = facet.first + offset;
-  if (facet.near) return {points.at[i], points.normal[i], points.gap[i]};
-  const Vec3 at = facet.at(f, v);
-  const contact::Distance d = contact::distance(shape, at);
-  return {at, d.normal, d.value - problem.thickness - problem.margin};
+  const double kept = problem.thickness + facet.margin(f, v);
+  if (facet.near) return {points.at[i], points.normal[i], points.gap[i], kept};
+  Beside beside{facet.at(f, v), {}, 0, kept};
+  contact::distances(shape, 1, &beside.at, &beside.gap, &beside.normal);
+  beside.gap -= kept;
+  return beside;
+}
+
+/// How much more than before a point of the facet may keep.
+double most_more(const ContactFacet& a, const ContactFacet& b, double half_width) {
+  const double longer = std::abs(b.eta[1] - b.eta[0] - a.eta[1] + a.eta[0]) * half_width;
+  const double lean = std::max(std::abs(b.eta[0] - a.eta[0]), std::abs(b.eta[1] - a.eta[1]));
+  const double leans = std::max(std::abs(b.eta[0] + a.eta[0]), std::abs(b.eta[1] + a.eta[1]));
+  const double lengths = 2 * a.length + std::abs(b.eta[1] - b.eta[0] + a.eta[1] - a.eta[0]) * half_width;
+  return b.sag[0] * longer * lengths + b.sag[1] * lean * leans;
 }
 
 /// Largest way of a facet's points: they lie between its corners, and so do their ways.
@@ -155,13 +180,14 @@ bool facet_may_go(const ContactProblem& problem, std::size_t index, const Contac
                   const ContactPoints& to) {
   const ContactFacet &a = from.facets[index], &b = to.facets[index];
   const double half_width = 0.5 * problem.width;
-  if (longest_way(a, b, half_width) < (1 - kLeastShare) * a.least) return true;
+  if (longest_way(a, b, half_width) + most_more(a, b, half_width) < (1 - kLeastShare) * a.least) return true;
   // Points stay as near to the middle as they are at both ends: lengths are convex along the way, too.
   const bool far = !(a.near && b.near);
   const double around = far ? std::max(radius(a, half_width), radius(b, half_width)) : 0;
-  if (far && lowest_on_way({a.middle(), a.normal, a.gap}, {b.middle(), b.normal, b.gap}) > around) return true;
+  const Beside here{a.middle(), a.normal, a.gap, a.kept}, there{b.middle(), b.normal, b.gap, b.kept};
+  if (far && lowest_on_way(here, there) > around) return true;
   const contact::Shape& shape = problem.solids[index % problem.solids.size()].shape;
-  const int first = first_row(index / problem.solids.size());
+  const int first = first_row(a, index / problem.solids.size());
   std::size_t offset = 0;
   for (int i = first; i <= problem.along; ++i) {
     const double f = share_of(problem, i);
@@ -181,6 +207,28 @@ double force_on(const ContactProblem& problem, const ContactPoints& points, cons
          contact::barrier_slopes(points.gap[touch.point], problem.distance, touch.log).first;
 }
 
+/// The grid with the fewest points whose margin is at most what there is room for; the finest if none is.
+///
+/// The square of the distance to a center or an axis, less that of a point's place, is concave. So on a chord of length
+/// c whose ends have distances R + m + g and more from it, with m = c^2/8R, nothing is nearer than R + g. In a cell of
+/// the grid a point lies on a chord along a ruling, whose ends lie on chords along the strip: m adds both squares.
+void set_grid(const Ribbon& ribbon, double radius, ContactProblem& problem) {
+  const double longest = *std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end());
+  const double room = 8 * radius * kRoom * problem.distance, ruling = problem.width * std::sqrt(1 + kLean * kLean);
+  const auto points = [](int along, double across) { return (along + 1) * (across + 1); };
+  problem.along = problem.across = radius < kInfinity ? kMostCells : 1;
+  for (int along = 1; points(along, 1) < points(problem.along, problem.across); ++along) {
+    const double left = room - longest / along * (longest / along);
+    if (!(left > 0)) continue;
+    const double across = std::ceil(ruling / std::sqrt(left));
+    if (points(along, across) >= points(problem.along, problem.across)) continue;
+    problem.along = along;
+    problem.across = static_cast<int>(across);
+  }
+  const double side = longest / problem.along, cell = problem.width / problem.across;
+  problem.margin = (side * side + cell * cell) / (8 * radius);
+}
+
 }  // namespace
 
 void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
@@ -190,8 +238,10 @@ void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surround
   double radius = kInfinity;
   for (const constraint::Obstacle& obstacle : surroundings.obstacles) {
     if (is_mesh(obstacle.shape)) continue;
-    problem.solids.push_back({obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction});
-    radius = std::min(radius, smallest_radius(obstacle.shape));
+    const double own = radius_of(obstacle.shape) + surroundings.contact.thickness;
+    problem.solids.push_back(
+        {obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction, 1 / (8 * own)});
+    radius = std::min(radius, own);
   }
   const double w = ribbon.width, d = surroundings.contact.distance;
   problem.width = w;
@@ -200,17 +250,7 @@ void place_solids(const Ribbon& ribbon, const constraint::Surroundings& surround
   const double load = ribbon.area_density * surroundings.gravity.norm();
   problem.stiffness = kStiffness * std::max(load, ribbon.bending_stiffness / (w * w * w)) / d;
   place_meshes(surroundings, t, problem.stiffness, problem.meshes);
-  // Points that are c apart and c^2/(8 R) off a solid of radius R leave it room between them. Cells lean by up to 45
-  // degrees, so that their diagonals' squares are up to four of their sides'. Half of the distance is for that.
-  const double cell = radius < kInfinity ? std::sqrt(radius * d) : kInfinity;
-  const auto cells = [&](double size) {
-    return static_cast<int>(std::clamp(std::ceil(size / cell), 1.0, static_cast<double>(kMostCells)));
-  };
-  const double longest = *std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end());
-  problem.across = cells(w);
-  problem.along = cells(longest);
-  const double side = std::max(w / problem.across, longest / problem.along);
-  problem.margin = std::min(0.5 * side * side / radius, d);
+  set_grid(ribbon, radius, problem);
 }
 
 void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
@@ -219,18 +259,17 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
   points.clear();
   find_mesh_pairs(ribbon, problem.meshes, chain, k, points.meshes);
   points.facets.resize(n * count);
-  const double kept = problem.thickness + problem.margin;
   for (std::size_t i = 0; i < count; ++i) {
     const Mat3 to_own = problem.solids[i].pose.frame.conjugate().toRotationMatrix();
     for (std::size_t s = 0; s < n; ++s)
-      points.facets[s * count + i] = facet_of(ribbon, chain, k, s, to_own, problem.solids[i].pose.position);
+      points.facets[s * count + i] = facet_of(ribbon, problem, chain, k, s, i, to_own);
   }
   for (std::size_t index = 0; index < points.facets.size(); ++index) {
     ContactFacet& facet = points.facets[index];
     const contact::Shape& shape = problem.solids[index % count].shape;
     const Vec3 middle = facet.middle();
     contact::distances(shape, 1, &middle, &facet.gap, &facet.normal);
-    facet.gap -= kept;
+    facet.gap -= facet.kept;
     facet.least = least_gap(facet, 0.5 * problem.width);
     // What is not a number is looked at as well, and is refused there.
     if (!(facet.least > problem.distance)) look_at(ribbon, problem, shape, index / count, index, points);

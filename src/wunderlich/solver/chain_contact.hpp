@@ -28,12 +28,13 @@ struct ContactProblem {
     contact::Shape shape;
     Pose pose;
     double friction;  ///< Coulomb's coefficient
+    double sag = 0;   ///< how much nearer than its ends a chord can be, over its length's square: 1/8 radius [1/m]
   };
   std::vector<Solid> solids;       ///< round ones and planes
   MeshProblem meshes;              ///< those of triangles
   double distance = 0;             ///< at which forces begin [m]
   double thickness = 0;            ///< that stays between surface and solid [m]
-  double margin = 0;               ///< that points keep so that facets between them stay out [m]
+  double margin = 0;               ///< the most that points keep beyond it where rulings do not lean [m]
   double stiffness = 0;            ///< of the barrier, per area [N/m^3]
   double width = 0;                ///< of the strip [m]
   int along = 1;                   ///< cells of points along a segment
@@ -47,13 +48,23 @@ struct ContactProblem {
 struct ContactFacet {
   Vec3 start, along;  ///< first node, and from it to the second one [m]
   Vec3 across[2];     ///< from a node to the point at v = 1 on its ruling
+  double length, eta[2];
+  double sag[2];      ///< the solid's, over the squares of cells along and of cells across over the width
+  double kept;        ///< no point keeps more [m]
   Vec3 normal;        ///< of the solid, where it is nearest to the facet's middle
-  double gap;         ///< distance of the middle beyond thickness and margin [m]
+  double gap;         ///< distance of the middle beyond that [m]
   double least;       ///< none of its points has a smaller gap [m]
   bool near;          ///< its points are looked at
   std::size_t first;  ///< of its points, if so
   Vec3 middle() const { return start + 0.5 * along; }
   Vec3 at(double f, double v) const { return start + f * along + v * ((1 - f) * across[0] + f * across[1]); }
+  double eta_at(double f) const { return (1 - f) * eta[0] + f * eta[1]; }
+  double length_at(double v) const { return length + v * (eta[1] - eta[0]); }
+  /// What a point keeps so that the facet between it and its neighbours stays out [m].
+  double margin(double f, double v) const {
+    const double lean = eta_at(f), side = length_at(v);
+    return sag[0] * side * side + sag[1] * (1 + lean * lean);
+  }
 };
 
 /// A point that feels a solid.
@@ -79,8 +90,7 @@ struct ContactPoints {
 void place_solids(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings, double t,
                   ContactProblem& problem);
 
-/// All points near solids; nothing else of the chain is looked at by what follows. Nodes' rulings belong to the segment
-/// before.
+/// All points near solids; nothing else of the chain is looked at by what follows.
 void find_points(const geometry::Ribbon& ribbon, const ContactProblem& problem, const geometry::Chain& chain,
                  const geometry::Kinematics& kinematics, ContactPoints& points);
 

@@ -49,6 +49,7 @@ struct FacetSums {
   EightSquare hessian{}, geometric{};
   Four leverage[3] = {all(0), all(0), all(0)};  ///< F arm^T, by rows, of the forces F
   Four slanting[2] = {all(0), all(0)};          ///< F times what the point moves along d3 with each eta
+  double keeping[3] = {0, 0, 0};  ///< forces times second derivatives of what points keep: by eta's first, both, second
 };
 
 /// A point's arm from the segment's far node, and its way along d3 with eta at the segment's start and end.
@@ -74,6 +75,18 @@ inline void add_force(double size, const Eight& move, const Lever& lever, FacetS
   for (int c = 0; c < 2; ++c) sums.slanting[c] += all(lever.slant[c]) * force;
 }
 
+/// What a point keeps grows as rulings lean: its gap shrinks.
+void add_keeping(const ContactFacet& facet, const Touch& touch, double force, Eight& nearer, FacetSums& sums) {
+  const double side = 2 * facet.sag[0] * touch.v, ruling = 2 * facet.sag[1];
+  const double longer = side * facet.length_at(touch.v), leans = ruling * facet.eta_at(touch.share);
+  const double early = sums.eta_free[0] * (1 - touch.share), late = sums.eta_free[1] * touch.share;
+  nearer.high[2] += sums.eta_free[0] * longer - early * leans;
+  nearer.high[3] -= sums.eta_free[1] * longer + late * leans;
+  sums.keeping[0] += force * (sums.eta_free[0] * side * touch.v + ruling * early * early);
+  sums.keeping[1] += force * (ruling * early * late - sums.eta_free[0] * sums.eta_free[1] * side * touch.v);
+  sums.keeping[2] += force * (sums.eta_free[1] * side * touch.v + ruling * late * late);
+}
+
 /// The force that the barrier's first derivative is, and both parts of the Hessian, of one point.
 void add_touch(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const ContactPoints& points,
                const Touch& touch, const Mat3& to_space, FacetSums& sums) {
@@ -84,7 +97,8 @@ void add_touch(const Ribbon& ribbon, const ContactProblem& problem, const Chain&
   const double weight = problem.stiffness * touch.area, gap = points.gap[touch.point];
   const contact::BarrierSlopes slopes = contact::barrier_slopes(gap, problem.distance, touch.log);
   const double first = weight * slopes.first;
-  const Eight nearer = moved(sums, lever, to_space * points.normal[touch.point]);
+  Eight nearer = moved(sums, lever, to_space * points.normal[touch.point]);
+  add_keeping(points.facets[touch.facet], touch, -first, nearer, sums);
   sums.hessian.add(weight * slopes.second, nearer);
   add_force(first, nearer, lever, sums);
   const contact::Bend bend = contact::bend(problem.solids[touch.facet % count].shape, points.at[touch.point]);
@@ -121,6 +135,10 @@ void add_friction(const Friction& friction, double slip, bool settled, const Sli
 /// The sums as a term, with the second derivative of the points' places: how levers turn.
 void finish(const FacetSums& sums, math::SurfaceTerm& term) {
   sums.hessian.store(term.hessian);
+  term.hessian(6, 6) += sums.keeping[0];
+  term.hessian(6, 7) += sums.keeping[1];
+  term.hessian(7, 6) += sums.keeping[1];
+  term.hessian(7, 7) += sums.keeping[2];
   sums.geometric.store(term.geometric);
   math::store(sums.gradient.low, term.gradient.data());
   math::store(sums.gradient.high, term.gradient.data() + 4);

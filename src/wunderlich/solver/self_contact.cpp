@@ -125,31 +125,6 @@ void find_extents(const SelfContact& problem, const std::vector<Vec3>& from, con
   for (const auto& triangle : search.triangle_parts) search.triangles.push_back(extent(triangle, from, to, margin));
 }
 
-/// All pairs that may come within reach on the way, but for neighbours.
-void find_candidates(const SelfContact& problem, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
-                     SelfSearch& search) {
-  find_extents(problem, from, to, 0.5 * (problem.reach + problem.thickness), search);
-  const contact::Grid grid = contact::grid_over(search.triangles);
-  contact::build_tree(search.corners, grid, search.corner_tree);
-  contact::build_tree(search.edges, grid, search.edge_tree);
-  contact::build_tree(search.triangles, grid, search.triangle_tree);
-  search.candidates.clear();
-  const auto take = [&](const SelfPair& pair) {
-    if (!are_neighbours(problem, pair)) search.candidates.push_back(pair);
-  };
-  contact::find_near(search.corner_tree, search.triangle_tree, search.near);
-  for (const auto& [corner, triangle] : search.near) {
-    const auto& t = search.triangle_parts[static_cast<std::size_t>(triangle)];
-    take({PairKind::vertex_triangle, {search.corner_parts[static_cast<std::size_t>(corner)], t[0], t[1], t[2]}});
-  }
-  contact::find_near(search.edge_tree, search.near);
-  for (const auto& [a, b] : search.near) {
-    const auto& ea = search.edge_parts[static_cast<std::size_t>(a)];
-    const auto& eb = search.edge_parts[static_cast<std::size_t>(b)];
-    take({PairKind::edge_edge, {ea[0], ea[1], eb[0], eb[1]}});
-  }
-}
-
 void find_corners(Strips strips, std::vector<Vec3>& corners) {
   corners.clear();
   for (const auto& [ribbon, chain, k] : strips) {
@@ -231,6 +206,30 @@ void place_beside(const SelfContact& other, SelfContact& all) {
     all.surfaces.push_back(surface);
   }
   all.flat.insert(all.flat.end(), other.flat.begin(), other.flat.end());
+}
+
+void find_candidates(const SelfContact& problem, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                     SelfSearch& search) {
+  find_extents(problem, from, to, 0.5 * (problem.reach + problem.thickness), search);
+  const contact::Grid grid = contact::grid_over(search.triangles);
+  contact::build_tree(search.corners, grid, search.corner_tree);
+  contact::build_tree(search.edges, grid, search.edge_tree);
+  contact::build_tree(search.triangles, grid, search.triangle_tree);
+  search.candidates.clear();
+  const auto take = [&](const SelfPair& pair) {
+    if (!are_neighbours(problem, pair)) search.candidates.push_back(pair);
+  };
+  contact::find_near(search.corner_tree, search.triangle_tree, search.near);
+  for (const auto& [corner, triangle] : search.near) {
+    const auto& t = search.triangle_parts[static_cast<std::size_t>(triangle)];
+    take({PairKind::vertex_triangle, {search.corner_parts[static_cast<std::size_t>(corner)], t[0], t[1], t[2]}});
+  }
+  contact::find_near(search.edge_tree, search.near);
+  for (const auto& [a, b] : search.near) {
+    const auto& ea = search.edge_parts[static_cast<std::size_t>(a)];
+    const auto& eb = search.edge_parts[static_cast<std::size_t>(b)];
+    take({PairKind::edge_edge, {ea[0], ea[1], eb[0], eb[1]}});
+  }
 }
 
 void find_pairs(Strips strips, const SelfContact& problem, SelfSearch& search, SelfContacts& contacts) {

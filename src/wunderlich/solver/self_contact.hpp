@@ -81,6 +81,11 @@ void place_self(const geometry::Ribbon& loop, const constraint::Surroundings& su
 /// A further strip beside those that are there. What they do to one another is as stiff as the stiffer of them.
 void place_beside(const SelfContact& other, SelfContact& all);
 
+/// All pairs of parts that may come within reach while corners go straight from one place to another, but for
+/// neighbours, into search.candidates.
+void find_candidates(const SelfContact& problem, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                     SelfSearch& search);
+
 /// Corners and pairs of strips at rest.
 void find_pairs(std::span<const StripPlace> strips, const SelfContact& problem, SelfSearch& search,
                 SelfContacts& contacts);

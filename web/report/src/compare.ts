@@ -27,9 +27,9 @@ function showTable(models: ModelRun[]) {
   byId('table').append(element('table', {}, element('thead', {}, head), element('tbody', {}, ...body)));
 }
 
-function tryViewer(model: ModelRun, host: HTMLElement): Viewer | null {
+function tryViewer(model: ModelRun, host: HTMLElement, seenAs: ModelRun): Viewer | null {
   try {
-    return createViewer(host, model.run, () => host.classList.add('touched'));
+    return createViewer(host, model.run, () => host.classList.add('touched'), seenAs.run);
   } catch {
     host.append(element('p.notice', {}, 'This browser offers no WebGL.'));
     return null;
@@ -50,11 +50,12 @@ function start() {
   byId('footer').textContent = `${program} ${version}`;
   showTable(models);
   const warnings = models.filter((m) => !m.converged).map((m) => `${m.model} did not converge: ${m.failure}`);
+  warnings.push(...models.flatMap((m) => (m.notes ?? []).map((note) => `${m.model}: ${note}`)));
   byId('warnings').append(...warnings.map((words) => element('p.notice', { role: 'note' }, words)));
   const views = models.map((model) => {
     const view = element('div.view', { tabindex: '0', role: 'img', 'aria-label': model.model });
     byId('models').append(element('figure.model', {}, view, element('figcaption', {}, `${model.model}, ${model.resolution}`)));
-    return { model, viewer: tryViewer(model, view) };
+    return { model, viewer: tryViewer(model, view, models[0]) };
   });
   const applyTheme = () => views.forEach(({ viewer }) => viewer?.setTheme(isDark()));
   byId('theme').addEventListener('click', () => {

@@ -2,7 +2,7 @@
 import { body, bytes, normals, points, type Frame, type Run } from './data';
 
 export interface ModelRun {
-  model: string; method: string; resolution: string; converged: boolean; failure?: string;
+  model: string; method: string; resolution: string; converged: boolean; failure?: string; notes?: string[];
   unknowns: number; constraints: number; normalized: number;
   area_error: number; diagonal_strain: number; rim_stretch: number;
   steps: number; step_us_median: number; wall_seconds: number; moved_seconds: number; wall_per_second: number;

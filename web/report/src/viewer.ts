@@ -122,7 +122,8 @@ function createControls(camera: THREE.Camera, element: HTMLElement): OrbitContro
   return controls;
 }
 
-export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => void): Viewer {
+/** `seenAs`: a run whose best view is taken, so that several are seen from one side. */
+export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => void, seenAs: Run = run): Viewer {
   const renderer = createRenderer(host);
 
   const scene = new THREE.Scene();
@@ -163,7 +164,7 @@ export function createViewer(host: HTMLElement, run: Run, onFirstDrag: () => voi
   controls.addEventListener('start', () => { untouched = false; onFirstDrag(); });
 
   const fits = fitsOf(run.frames);
-  const usualView = bestView(run.frames[run.frames.length - 1]);
+  const usualView = bestView(seenAs.frames[seenAs.frames.length - 1]);
   const weights = nodeWeights(run);
   let position = run.frames.length - 1;
   let colour: Colour = 'none';

@@ -90,8 +90,8 @@ Mesh surface_mesh(const Rod& rod, const State& state, int across) {
   for (int j = 0; j < rod.segments; ++j) {
     for (int c = 0; c < across; ++c) {
       const int a = j * (across + 1) + c, b = a + across + 1;
-      mesh.triangles.push_back({a, b, b + 1});
-      mesh.triangles.push_back({a, b + 1, a + 1});
+      mesh.triangles.push_back({a, a + 1, b});  // counter-clockwise seen from m1
+      mesh.triangles.push_back({a + 1, b + 1, b});
     }
   }
   return mesh;

@@ -14,6 +14,7 @@ using geometry::Ribbon;
 namespace {
 
 constexpr double kGapTolerance = 1e-4;     // of a point, over the width
+constexpr double kPairTolerance = 0.2;     // of a pair, over what it keeps
 constexpr double kConeTolerance = 1e-6;    // of what forces close, over the largest gap at first
 constexpr double kEnough = 0.03;           // of the gaps' tolerance, where forces are slow to find
 constexpr int kMostSweeps = 100;           // of a small dense problem: what is left the next round takes up
@@ -62,9 +63,16 @@ void record(const Nearest& nearest, const Workspace& work, StepReport& report) {
   report.push.setZero();
   report.touching = 0;
   for (const Touch& touch : work.touches) {
-    report.push += touch.push * touch.normal + touch.drag;
     report.touching += touch.push > 0;
+    if (touch.solid != kItself) report.push += touch.push * touch.normal + touch.drag;
   }
+}
+
+/// What may be missing of a gap; pairs must not lose much of what they keep.
+double gap_tolerance(const Ribbon& ribbon, const Workspace& work) {
+  const bool pairs = work.corners.has_meshes || work.corners.self.active();
+  const double of_width = kGapTolerance * ribbon.width;
+  return pairs ? std::min(of_width, kPairTolerance * work.corners.margin) : of_width;
 }
 
 /// One linearisation: what touches and the equations, or the equations alone.
@@ -83,15 +91,16 @@ bool project_once(const Options& options, bool touches, double tolerance, double
 
 bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& options, double dt, State& state,
                     Workspace& work, StepReport& report) {
-  if (drive.surroundings == nullptr || drive.surroundings->obstacles.empty()) return true;
+  if (drive.surroundings == nullptr) return true;
+  if (drive.surroundings->obstacles.empty() && !drive.surroundings->contact.self) return true;
   const double t0 = work.before.time;
-  set_solids(ribbon, *drive.surroundings, t0, t0 + dt, work);
-  const double tolerance = kGapTolerance * ribbon.width;
+  set_surroundings(ribbon, *drive.surroundings, t0, t0 + dt, work);
+  const double tolerance = gap_tolerance(ribbon, work);
   const bool swept = options.opt.projection == Projection::gauss_seidel;
   const double angle_tolerance = 0.1 * options.opt.constraint_tolerance;
   const double length_tolerance = swept ? angle_tolerance : kLengthTolerance;
   Nearest nearest = find_touches(ribbon, state.shape, 0, work);  // all that is inside, though it be little
-  if (work.touches.empty()) {
+  if (work.touches.empty() && !nearest.passes) {
     record(nearest, work, report);
     return true;
   }
@@ -100,13 +109,13 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
   double close = 0;
   for (int round = 0; round < options.contact.max_rounds; ++round) {
     if (!assemble_equations(ribbon, options, state.shape, work)) break;
-    assemble_touches(ribbon, state.shape, dt, work);
+    assemble_touches(ribbon, state.shape, work);
     const double depth = deepest(work);
     const bool out = !first && depth <= tolerance;
     const bool equations_hold =
         work.equations.worst_length <= length_tolerance && work.equations.worst_angle <= angle_tolerance;
-    settled = out && equations_hold;
-    if (settled) break;
+    settled = out && equations_hold && !nearest.passes;
+    if (settled || (out && equations_hold)) break;
     if (round == 0) close = swept ? 0.1 * angle_tolerance * ribbon.width : kConeTolerance * depth;
     if (!project_once(options, !out, close, kEnough * tolerance, work, report)) break;
     ++report.contact_rounds;
@@ -119,8 +128,12 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
   set_velocity(ribbon, options, dt, state, work);
   record(nearest, work, report);
   if (settled) return true;
+  if (nearest.passes) {
+    report.failure = "contact: parts that would go through each other could not be kept apart";
+    return false;
+  }
   if (nearest.distance < -options.contact.most_penetration * ribbon.width || !std::isfinite(nearest.distance)) {
-    report.failure = "contact: the strip could not be brought out of the solids";
+    report.failure = "contact: the strip could not be brought apart from what it touches";
     return false;
   }
   const bool loose = !(work.equations.worst_length <= options.opt.constraint_tolerance &&

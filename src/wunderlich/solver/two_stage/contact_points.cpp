@@ -19,8 +19,6 @@ constexpr int kMostTraces = 200;     // of a point on its way
 constexpr int kMostCells = 12;       // along and across a facet
 constexpr double kSamePlace = 1e-3;  // share of a facet within which points are one
 constexpr int kGoldenSteps = 16;     // in looking for the deepest point
-constexpr double kLeft = 0.8;        // of a depth that a step leaves: it comes out without being thrown
-constexpr double kMostLeft = 0.005;  // of the width: no more may be left
 constexpr double kSameDepth = 0.7;   // of the deepest point of a ruling that outer ones must have to count
 constexpr double kStraight = 1.05;   // deeper than the chord of the outermost by less: says nothing new
 
@@ -34,9 +32,6 @@ double inner_radius(const contact::Shape& shape) {
   if (const auto* box = std::get_if<contact::Box>(&shape)) return box->half_size.minCoeff();
   return std::numeric_limits<double>::infinity();
 }
-
-Vec3 into(const Pose& pose, const Vec3& point) { return pose.frame.conjugate() * Vec3(point - pose.position); }
-Vec3 out_of(const Pose& pose, const Vec3& point) { return pose.position + pose.frame * point; }
 
 /// The grid of points on a facet.
 struct Grid {
@@ -114,7 +109,7 @@ double kept_by(const ContactProblem& solids) { return solids.thickness + solids.
 
 double start_gap(const Touch& touch, const Workspace& work) {
   const ContactProblem::Solid& solid = work.solids_before.solids[touch.solid];
-  return contact::distance(solid.shape, into(solid.pose, place_of(work.before, touch.place))).value -
+  return contact::distance(solid.shape, into(solid.pose, place_of(work.before, touch.arm[0].place))).value -
          kept_by(work.solids_before);
 }
 
@@ -124,22 +119,22 @@ void add_touch(const Facet& facet, double share, double v, double width, Workspa
   const bool shared = share == 0 && facet.segment > 0;
   const Place here = shared ? Place{facet.segment - 1, 1, v} : Place{facet.segment, share, v};
   for (Touch& touch : work.touches) {
-    const Place& place = touch.place;
-    if (touch.solid == facet.solid && place.segment == here.segment &&
+    const Place& place = touch.arm[0].place;
+    if (!touch.pair && touch.solid == facet.solid && place.segment == here.segment &&
         std::abs(place.share - here.share) < kSamePlace && std::abs(place.v - v) < kSamePlace * width) {
       touch.fast = touch.fast || facet.fast;
       return;
     }
   }
   Touch touch;
-  touch.place = here;
+  touch.arm[0] = {here, 1, eta_at(work.before, here)};
   touch.solid = facet.solid;
   touch.fast = facet.fast;
-  touch.eta_start = eta_at(work.before, touch.place);
-  const Vec3 start = material_place(work.before, touch.place, touch.eta_start);
+  touch.friction = work.solids.solids[facet.solid].friction;
+  const Vec3 start = place_of(work.before, here);
   touch.from = out_of(work.solids.solids[facet.solid].pose, into(work.solids_before.solids[facet.solid].pose, start));
   // The gap of a moment ago, with the solid's own motion: where the strip stood is no reason to throw it.
-  touch.allowed = std::clamp(kLeft * start_gap(touch, work), -kMostLeft * width, 0.0);
+  touch.allowed = allowed_gap(start_gap(touch, work), width);
   work.touches.push_back(touch);
 }
 
@@ -276,15 +271,15 @@ void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundin
   };
   place(t0, work.solids_before);
   place(t1, work.solids);
-  work.touches.clear();
 }
 
-Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double tolerance, Workspace& work) {
+void find_points(const Ribbon& ribbon, const geometry::State& shape, double tolerance, Nearest& nearest,
+                 Workspace& work) {
   const ContactProblem& solids = work.solids;
   const Grid grid{static_cast<std::size_t>(solids.along), static_cast<std::size_t>(solids.across), ribbon.width};
-  Nearest nearest{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t i = 0; i < solids.solids.size(); ++i) {
     const contact::Shape& solid = solids.solids[i].shape;
+    if (std::holds_alternative<contact::Polyhedron>(solid)) continue;  // met by pairs
     const double size = inner_radius(solid);
     for (std::size_t s = 0; s < shape.q.size(); ++s) {
       Facet facet = facet_of(shape, solids.solids[i].pose, i, s);
@@ -300,16 +295,15 @@ Nearest find_touches(const Ribbon& ribbon, const geometry::State& shape, double 
     }
   }
   nearest.distance = nearest.gap + solids.margin;
-  return nearest;
 }
 
-void refresh_touch(const geometry::State& shape, const Workspace& work, Touch& touch) {
+void refresh_point(const geometry::State& shape, const Workspace& work, Touch& touch) {
   const ContactProblem::Solid& solid = work.solids.solids[touch.solid];
   const double kept = kept_by(work.solids);
-  const Vec3 at = into(solid.pose, place_of(shape, touch.place));
+  const Vec3 at = into(solid.pose, place_of(shape, touch.arm[0].place));
   Distance d;
   if (touch.fast) {
-    const Vec3 before = into(work.solids_before.solids[touch.solid].pose, place_of(work.before, touch.place));
+    const Vec3 before = into(work.solids_before.solids[touch.solid].pose, place_of(work.before, touch.arm[0].place));
     d = swept_distance(solid.shape, before, at, kept);
   } else {
     d = contact::distance(solid.shape, at);

@@ -31,7 +31,7 @@ Eigen::Ref<Vec7> slope_at(std::size_t block, Row& row) {
     if (row.block[slot] < 0) row.block[slot] = b;
     if (row.block[slot] == b) return row.slope.col(static_cast<Eigen::Index>(slot));
   }
-  return row.slope.col(0);  // not reached: no row touches more than three nodes
+  return row.slope.col(0);  // not reached: no row touches more nodes
 }
 
 /// Adds what a row gains from the turn of a segment's frame [per rad, own axes]: its own, and that with its edge.
@@ -79,8 +79,7 @@ void worsen(double value, double& worst) {
 void list_touching(Equations& equations) {
   std::fill(equations.touch_count.begin(), equations.touch_count.end(), 0);
   for (std::size_t row = 0; row < equations.rows.size(); ++row) {
-    for (std::size_t slot = 0; slot < 3; ++slot) {
-      if (equations.rows[row].block[slot] < 0) continue;
+    for (std::size_t slot = 0; slot < Row::kMost && equations.rows[row].block[slot] >= 0; ++slot) {
       const auto b = static_cast<std::size_t>(equations.rows[row].block[slot]);
       const auto at = static_cast<std::size_t>(equations.touch_count[b]++);
       equations.touch[b][at] = {static_cast<int>(row), static_cast<int>(slot)};
@@ -190,9 +189,8 @@ bool factor_equations(Workspace& work) {
   return math::factor(equations.normal).sound;
 }
 
-void point_row(const Ribbon& ribbon, const geometry::State& shape, const Place& place, double eta,
+void add_point(const Ribbon& ribbon, const geometry::State& shape, const Place& place, double eta,
                const Vec3& direction, bool rulings, const Workspace& work, Row& row) {
-  row = Row();
   const std::size_t s = place.segment;
   const Vec3 own = shape.q[s].conjugate() * direction;
   slope_at(block_of(ribbon, s), row).head<3>() += (1 - place.share) * direction;

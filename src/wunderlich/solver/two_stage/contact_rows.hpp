@@ -20,10 +20,12 @@ struct Workspace;
 using Vec7 = Eigen::Matrix<double, 7, 1>;
 inline constexpr int kEtaPlace = 3, kThetaPlace = 4;
 
-/// Slopes of one constraint in the unknowns of the nodes it touches.
+/// Slopes of one constraint in the unknowns of the nodes it touches: three at most of an equation, two of a point,
+/// six of two edges.
 struct Row {
-  std::array<int, 3> block{-1, -1, -1};  ///< -1: none
-  Eigen::Matrix<double, 7, 3> slope = Eigen::Matrix<double, 7, 3>::Zero();
+  static constexpr std::size_t kMost = 6;
+  std::array<int, kMost> block{-1, -1, -1, -1, -1, -1};  ///< those beyond the last -1
+  Eigen::Matrix<double, 7, kMost> slope = Eigen::Matrix<double, 7, kMost>::Zero();
   double residual = 0;
 };
 
@@ -67,8 +69,8 @@ bool assemble_equations(const geometry::Ribbon& ribbon, const Options& options, 
 /// Factors their matrix.
 bool factor_equations(Workspace& work);
 
-/// Motion of a point along a direction; with `rulings` also that which turning rulings bring.
-void point_row(const geometry::Ribbon& ribbon, const geometry::State& shape, const Place& place, double eta,
+/// Adds the motion of a point along a direction, of any length; with `rulings` also that which turning rulings bring.
+void add_point(const geometry::Ribbon& ribbon, const geometry::State& shape, const Place& place, double eta,
                const Vec3& direction, bool rulings, const Workspace& work, Row& row);
 
 /// The bound |x| <= limit of one segment, as limit - |x| >= 0.

@@ -33,15 +33,16 @@ Row& add_cone(double friction, double force, Workspace& work) {
   return work.contact_rows[at];
 }
 
+auto column(const Row& row, std::size_t slot) { return row.slope.col(static_cast<Eigen::Index>(slot)); }
+
 /// Slopes of a row times W^-1 times those of another, over the blocks they share.
 double weighted_dot(const Row& a, const Row& b, const Equations& equations) {
   double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (a.block[static_cast<std::size_t>(i)] < 0) continue;
-    for (int j = 0; j < 3; ++j) {
-      if (a.block[static_cast<std::size_t>(i)] != b.block[static_cast<std::size_t>(j)]) continue;
-      const auto block = static_cast<std::size_t>(a.block[static_cast<std::size_t>(i)]);
-      sum += a.slope.col(i).cwiseProduct(equations.inverse_metric[block]).dot(b.slope.col(j));
+  for (std::size_t i = 0; i < Row::kMost && a.block[i] >= 0; ++i) {
+    for (std::size_t j = 0; j < Row::kMost && b.block[j] >= 0; ++j) {
+      if (a.block[i] != b.block[j]) continue;
+      const Vec7& inverse = equations.inverse_metric[static_cast<std::size_t>(a.block[i])];
+      sum += column(a, i).cwiseProduct(inverse).dot(column(b, j));
     }
   }
   return sum;
@@ -50,10 +51,9 @@ double weighted_dot(const Row& a, const Row& b, const Equations& equations) {
 /// out = J_e W^-1 j^T of one row j; returns the first place that is not 0.
 int couple(const Row& row, const Equations& equations, double* out) {
   int first = equations.normal.size;
-  for (int i = 0; i < 3; ++i) {
-    if (row.block[static_cast<std::size_t>(i)] < 0) continue;
-    const auto block = static_cast<std::size_t>(row.block[static_cast<std::size_t>(i)]);
-    const Vec7 weighted = equations.inverse_metric[block].cwiseProduct(row.slope.col(i));
+  for (std::size_t i = 0; i < Row::kMost && row.block[i] >= 0; ++i) {
+    const auto block = static_cast<std::size_t>(row.block[i]);
+    const Vec7 weighted = equations.inverse_metric[block].cwiseProduct(column(row, i));
     for (std::size_t t = 0; t < static_cast<std::size_t>(equations.touch_count[block]); ++t) {
       const Touching& touching = equations.touch[block][t];
       out[touching.row] +=
@@ -89,18 +89,16 @@ void backward(const math::BandedMatrix& factored, double* x) {
 
 /// motion += W^-1 j^T force.
 void push_row(const Row& row, double force, const Equations& equations, std::vector<Vec7>& motion) {
-  for (int i = 0; i < 3; ++i) {
-    if (row.block[static_cast<std::size_t>(i)] < 0) continue;
-    const auto block = static_cast<std::size_t>(row.block[static_cast<std::size_t>(i)]);
-    motion[block] += force * equations.inverse_metric[block].cwiseProduct(row.slope.col(i));
+  for (std::size_t i = 0; i < Row::kMost && row.block[i] >= 0; ++i) {
+    const auto block = static_cast<std::size_t>(row.block[i]);
+    motion[block] += force * equations.inverse_metric[block].cwiseProduct(column(row, i));
   }
 }
 
 double along(const Row& row, const std::vector<Vec7>& motion) {
   double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (row.block[static_cast<std::size_t>(i)] < 0) continue;
-    sum += row.slope.col(i).dot(motion[static_cast<std::size_t>(row.block[static_cast<std::size_t>(i)])]);
+  for (std::size_t i = 0; i < Row::kMost && row.block[i] >= 0; ++i) {
+    sum += column(row, i).dot(motion[static_cast<std::size_t>(row.block[i])]);
   }
   return sum;
 }
@@ -153,24 +151,32 @@ void assemble_cones(Workspace& work) {
 
 }  // namespace
 
-void assemble_touches(const Ribbon& ribbon, const geometry::State& shape, double dt, Workspace& work) {
+void touch_row(const Ribbon& ribbon, const geometry::State& shape, const Touch& touch, const Vec3& direction,
+               bool rulings, const Workspace& work, Row& row) {
+  row = Row();
+  for (const Arm& arm : touch.arms()) {
+    const double eta = rulings ? eta_at(shape, arm.place) : arm.eta_start;
+    add_point(ribbon, shape, arm.place, eta, arm.weight * direction, rulings, work, row);
+  }
+}
+
+void assemble_touches(const Ribbon& ribbon, const geometry::State& shape, Workspace& work) {
   work.cones.size = 0;
   work.cones.force.clear();
   work.cones.friction.clear();
-  (void)dt;
   for (Touch& touch : work.touches) {
     refresh_touch(shape, work, touch);
-    const double friction = work.solids.solids[touch.solid].friction;
-    Row& normal = add_cone(friction, touch.push, work);
-    point_row(ribbon, shape, touch.place, eta_at(shape, touch.place), touch.normal, true, work, normal);
+    Row& normal = add_cone(touch.friction, touch.push, work);
+    touch_row(ribbon, shape, touch, touch.normal, true, work, normal);
     normal.residual = touch.gap - touch.allowed;
-    if (friction == 0) continue;
-    const Vec3 way = material_place(shape, touch.place, touch.eta_start) - touch.from;
+    if (touch.friction == 0) continue;
+    Vec3 way = -touch.from;
+    for (const Arm& arm : touch.arms()) way += arm.weight * material_place(shape, arm.place, arm.eta_start);
     Vec3 a, b;
     tangents(touch.normal, a, b);
     for (const Vec3& direction : {a, b}) {
       Row& row = add_cone(-1, touch.drag.dot(direction), work);
-      point_row(ribbon, shape, touch.place, touch.eta_start, direction, false, work, row);
+      touch_row(ribbon, shape, touch, direction, false, work, row);
       row.residual = way.dot(direction);
     }
   }
@@ -265,7 +271,7 @@ void keep_forces(double share, Workspace& work) {
   for (Touch& touch : work.touches) {
     if (k >= work.cones.force.size()) return;
     touch.push = taken(k++);
-    if (work.solids.solids[touch.solid].friction == 0) continue;
+    if (touch.friction == 0) continue;
     Vec3 a, b;
     tangents(touch.normal, a, b);
     touch.drag = taken(k) * a + taken(k + 1) * b;

@@ -2,13 +2,17 @@
 #pragma once
 
 #include "wunderlich/solver/two_stage/cone_solve.hpp"
-#include "wunderlich/solver/two_stage/contact_points.hpp"
+#include "wunderlich/solver/two_stage/contact_touch.hpp"
 
 namespace wunderlich::solver::two_stage {
 
+/// Motion of a touch along a direction; with `rulings` also that which turning rulings bring.
+void touch_row(const geometry::Ribbon& ribbon, const geometry::State& shape, const Touch& touch, const Vec3& direction,
+               bool rulings, const Workspace& work, Row& row);
+
 /// Rows of what touches: of each touch its normal and, with friction, two tangents; then those of rulings close to
 /// meeting. Residuals: gap [m], way beside the solid in this step [m], room of |x|.
-void assemble_touches(const geometry::Ribbon& ribbon, const geometry::State& shape, double dt, Workspace& work);
+void assemble_touches(const geometry::Ribbon& ribbon, const geometry::State& shape, Workspace& work);
 
 /// Motion that keeps the equations and what touches, with the least |motion|_W, into work.motion; forces into
 /// work.cones.force. The equations are eliminated by a banded solve, the rest is small and dense.

@@ -125,8 +125,9 @@ struct Drive {
   std::vector<Support> supports;
   std::vector<Load> loads;
   Vec3 gravity = Vec3::Zero();                             ///< [m/s^2]
-  const constraint::Surroundings* surroundings = nullptr;  ///< whose obstacles are met, at the state's own time; no
-                                                           ///< more of it is read; nullptr: none
+  const constraint::Surroundings* surroundings = nullptr;  ///< whose obstacles are met, at the state's own time, and
+                                                           ///< how the strip meets them and itself; no more of it is
+                                                           ///< read; nullptr: nothing is met
 };
 
 /// What a checkpoint must hold for a run to go on bit for bit.
@@ -157,9 +158,10 @@ struct StepReport {
   int contact_sweeps = 0;      ///< of its Gauss-Seidel
   int contact_capped = 0;      ///< times that reached its cap
   int contact_unsettled = 0;   ///< substeps whose contacts did not settle to the tolerance
-  int touching = 0;            ///< points that solids push in the last substep
-  double nearest = std::numeric_limits<double>::infinity();  ///< smallest distance to a solid in the step, a bound from
-                                                             ///< below, beyond the thickness [m]
+  int touching = 0;            ///< points and pairs that push in the last substep
+  double nearest = std::numeric_limits<double>::infinity();  ///< smallest distance to a solid in the step, or of parts
+                                                             ///< of the strip, a bound from below, beyond the
+                                                             ///< thickness [m]
   Vec3 push = Vec3::Zero();                                  ///< what solids exert on the strip in the last substep [N]
   ConstraintErrors constraints;
   double contact_seconds = 0;

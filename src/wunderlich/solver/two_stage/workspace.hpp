@@ -8,8 +8,9 @@
 #include "wunderlich/geometry/state.hpp"
 #include "wunderlich/math/banded.hpp"
 #include "wunderlich/math/lbfgs.hpp"
+#include "wunderlich/solver/chain_contact.hpp"
 #include "wunderlich/solver/two_stage/cone_solve.hpp"
-#include "wunderlich/solver/two_stage/contact_points.hpp"
+#include "wunderlich/solver/two_stage/contact_pairs.hpp"
 #include "wunderlich/solver/two_stage/range_space.hpp"
 #include "wunderlich/solver/two_stage/types.hpp"
 
@@ -63,6 +64,7 @@ struct Workspace {
 
   // stage contact
   ContactProblem solids_before, solids;  ///< at both ends of the substep
+  Corners corners;
   std::vector<Touch> touches;
   std::vector<double> gaps, ruling_gaps, line_gaps;  ///< of the points of a facet, least by ruling, of one ruling
   Equations equations;
