@@ -64,7 +64,8 @@ void add_sweep_run(CLI::App& command, SweepArguments& arguments) {
   command.add_flag("--retry", arguments.retry, "Do again what failed, timed out or did not converge");
   command.add_option("--shards", arguments.shards, "Slurm: parts of the array; default one for every 500 runs")
       ->type_name("N");
-  command.add_option("--walltime", arguments.walltime, "Slurm: limit of a shard, as sbatch takes it")->type_name("TIME");
+  command.add_option("--walltime", arguments.walltime, "Slurm: limit of a shard, as sbatch takes it")
+      ->type_name("TIME");
   command.add_option("--partition", arguments.partition, "Slurm: where to run")->type_name("NAME");
   command.add_flag("--no-requeue", arguments.no_requeue, "Slurm: do not start a shard again whose node failed");
   command.add_option("--sbatch", arguments.sbatch, "Slurm: a further argument of sbatch; repeatable")
@@ -85,9 +86,9 @@ void add_sweep(CLI::App& program, SweepArguments& arguments, std::string& folder
   command->callback([&, command, status] {
     const bool inner = !command->get_subcommands().empty();
     if (!inner && arguments.sweep.empty()) throw CLI::RequiredError("sweep");
-    exit_code = !inner                ? sweep_command(arguments)
-                : status->parsed()    ? sweep_status_command(folder)
-                                      : sweep_collect_command(folder);
+    exit_code = !inner             ? sweep_command(arguments)
+                : status->parsed() ? sweep_status_command(folder)
+                                   : sweep_collect_command(folder);
   });
 }
 

@@ -131,17 +131,19 @@ int sweep_command(const SweepArguments& arguments) {
     });
   };
   if (!arguments.quiet) {
-    std::cout << fmt::format("{}: {} runs, {} of them done already\n", sweep.name, now.runs, now.finished) << std::flush;
+    std::cout << fmt::format("{}: {} runs, {} of them done already\n", sweep.name, now.runs, now.finished)
+              << std::flush;
     if (now.runs - now.finished > 20 * kTried) {
       go(kTried);
-      std::cout << fmt::format("about {} with {} processes, as {} runs took\n", duration(now.left()), options.jobs, kTried)
+      std::cout << fmt::format("about {} with {} processes, as {} runs took\n", duration(now.left()), options.jobs,
+                               kTried)
                 << std::flush;
     }
   }
   if (!interrupt_requested()) go(0);
   if (interrupt_requested()) {
-    std::cerr << fmt::format("{}: interrupted after {} of {} runs; the same command goes on\n", sweep.name, now.finished,
-                             now.runs);
+    std::cerr << fmt::format("{}: interrupted after {} of {} runs; the same command goes on\n", sweep.name,
+                             now.finished, now.runs);
     return interrupted;
   }
   if (options.shard.count == 1) collect(folder, sweep, report::sweep_template());

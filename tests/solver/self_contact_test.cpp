@@ -152,8 +152,8 @@ geometry::RibbonSpec loop(int segments, int half_twists) {
 }
 
 /// Twisted by a whole turn and closed, a loop comes to rest with its two inflection rulings end to end, in the shape
-/// of a zero: V l/(D w) = 56.908, twist 0.28662 (validation/reference/loop2pi.json, an independent solution of error 1e-9
-/// with the edges in touch).
+/// of a zero: V l/(D w) = 56.908, twist 0.28662 (validation/reference/loop2pi.json, an independent solution of error
+/// 1e-9 with the edges in touch).
 TEST(SelfContact, ALoopOfAWholeTurnBecomesAZero) {
   constexpr double kEnergy = 9.057241848580842 * 2 * kPi, kTwist = 0.286620566912973, kDistance = 1e-4;
   const std::vector<std::pair<int, double>> bounds{{50, 1.2e-2}, {100, 3e-3}, {200, 8e-4}};

@@ -16,9 +16,9 @@ std::map<std::size_t, Done> run(const PoolOptions& options, std::size_t count,
                                 const std::function<std::string(std::size_t)>& work) {
   std::map<std::size_t, Done> all;
   std::size_t given = 0;
-  run_pool(options, [&] { return given < count ? static_cast<long>(given++) : -1L; }, work,
-           [&](const Done& done) { EXPECT_TRUE(all.emplace(done.item, done).second) << done.item; },
-           [] { return true; });
+  run_pool(
+      options, [&] { return given < count ? static_cast<long>(given++) : -1L; }, work,
+      [&](const Done& done) { EXPECT_TRUE(all.emplace(done.item, done).second) << done.item; }, [] { return true; });
   return all;
 }
 
@@ -63,12 +63,13 @@ TEST(Pool, OneThatHangsIsEnded) {
 
 TEST(Pool, StopsWhenToldTo) {
   std::size_t given = 0, finished = 0;
-  run_pool({2, 0}, [&] { return static_cast<long>(given++); },
-           [](std::size_t) {
-             std::this_thread::sleep_for(std::chrono::milliseconds(5));
-             return std::string();
-           },
-           [&](const Done&) { ++finished; }, [&] { return finished < 10; });
+  run_pool(
+      {2, 0}, [&] { return static_cast<long>(given++); },
+      [](std::size_t) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return std::string();
+      },
+      [&](const Done&) { ++finished; }, [&] { return finished < 10; });
   EXPECT_GE(finished, 10u);
   EXPECT_LE(finished, 12u);
 }

@@ -128,7 +128,8 @@ TEST(Sweep, BadInputSaysWhereAndWhat) {
   refused("  - zip: [{key: ribbon.width, values: [0.1]}, {key: ribbon.length, values: [1, 2]}]\n", "as many");
   refused("  - {random: {count: 2, seed: 1, axes: [{key: ribbon.width, from: 1, to: 2, scale: logg}]}}\n", "`log`");
   EXPECT_NE(message("scene: cantilver\naxes: []\ncollect: {}\n").find("cantilever"), std::string::npos);
-  EXPECT_NE(message("scene: cantilever\naxes: [{key: ribbon.width, values: [1]}]\n").find("collect"), std::string::npos);
+  EXPECT_NE(message("scene: cantilever\naxes: [{key: ribbon.width, values: [1]}]\n").find("collect"),
+            std::string::npos);
 }
 
 }  // namespace

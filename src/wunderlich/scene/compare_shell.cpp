@@ -19,7 +19,7 @@ namespace shell = baseline::shell;
 namespace {
 
 constexpr double kBulge = 1e-4;  // over the length: out of its plane, so that a flat strip can buckle
-constexpr double kDrift = 2e-3;   // over the length: what points move by, in a quarter of the time of loading, at rest
+constexpr double kDrift = 2e-3;  // over the length: what points move by, in a quarter of the time of loading, at rest
 constexpr int kMaxHalvings = 6;
 constexpr int kRounds = 50;  // of fast projection in a step; where it locks, more do not help
 
@@ -106,12 +106,12 @@ struct Run {
     return advance(0.5 * (t0 + t1), halvings + 1, iterations) && advance(t1, halvings + 1, iterations);
   }
 
-  /// Has nothing gone anywhere since the last look? Speeds would not tell: lengths that may be off by the tolerance are put
-  /// right by jerks, for ever.
+  /// Has nothing gone anywhere since the last look? Speeds would not tell: lengths that may be off by the tolerance are
+  /// put right by jerks, for ever.
   bool is_resting() {
     if (!path || state.time < loaded || state.time < next_look) return false;
-    const bool still = before.size() > 0 &&
-                       (state.x - before).rowwise().norm().maxCoeff() < kDrift * scene.ribbon.length;
+    const bool still =
+        before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < kDrift * scene.ribbon.length;
     before = state.x;
     next_look = state.time + 0.25 * factor;
     return still;

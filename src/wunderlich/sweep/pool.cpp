@@ -68,7 +68,8 @@ struct Worker {
 
 Worker start_worker(const std::vector<Worker>& others, const std::function<std::string(std::size_t)>& work) {
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) throw std::runtime_error("no process can be started: socketpair");
+  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0)
+    throw std::runtime_error("no process can be started: socketpair");
   const pid_t parent = ::getpid(), process = ::fork();
   if (process < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
   if (process == 0) {
@@ -186,7 +187,8 @@ class Pool {
 }  // namespace
 
 void run_pool(const PoolOptions& options, const std::function<long()>& next,
-              const std::function<std::string(std::size_t)>& work, const std::function<void(const Done&)>& done, const std::function<bool()>& goes_on) {
+              const std::function<std::string(std::size_t)>& work, const std::function<void(const Done&)>& done,
+              const std::function<bool()>& goes_on) {
   Pool(options, work).go(next, done, goes_on);
 }
 

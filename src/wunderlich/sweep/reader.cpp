@@ -23,8 +23,8 @@ void require_keys(const Node& map, const std::vector<std::string>& allowed) {
     const std::string guess = scene::nearest(name, allowed);
     const std::string path = map.path.empty() ? name : map.path + "." + name;
     scene::fail(map.value->name_places[i], scene::shown(path),
-                fmt::format("unknown key{} Allowed: {}", guess.empty() ? "." : fmt::format("; did you mean `{}`?", guess),
-                            scene::joined(allowed)));
+                fmt::format("unknown key{} Allowed: {}",
+                            guess.empty() ? "." : fmt::format("; did you mean `{}`?", guess), scene::joined(allowed)));
   }
 }
 
@@ -59,8 +59,8 @@ std::string word(const Node& scalar) {
 double number(const Node& scalar, double low, double high) {
   const auto parsed = scene::parse_number(word(scalar));
   if (!parsed || !std::isfinite(*parsed) || *parsed < low || *parsed > high) {
-    refuse(scalar, fmt::format("{} is not allowed; must be a number from {:g} to {:g}", described(*scalar.value), low,
-                               high));
+    refuse(scalar,
+           fmt::format("{} is not allowed; must be a number from {:g} to {:g}", described(*scalar.value), low, high));
   }
   return *parsed;
 }

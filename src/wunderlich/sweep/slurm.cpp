@@ -39,7 +39,8 @@ Answer call(const std::string& command) {
   std::FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return answer;
   std::array<char, 4096> block;
-  while (const std::size_t count = std::fread(block.data(), 1, block.size(), pipe)) answer.text.append(block.data(), count);
+  while (const std::size_t count = std::fread(block.data(), 1, block.size(), pipe))
+    answer.text.append(block.data(), count);
   const int status = ::pclose(pipe);
   answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return answer;
@@ -52,8 +53,8 @@ std::size_t shard_count(const SlurmOptions& options, std::size_t runs) {
   return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, runs));
 }
 
-std::string job_script(const SlurmOptions& options, std::size_t runs, const std::string& program, const fs::path& folder,
-                       const std::string& name) {
+std::string job_script(const SlurmOptions& options, std::size_t runs, const std::string& program,
+                       const fs::path& folder, const std::string& name) {
   const std::size_t shards = shard_count(options, runs);
   std::string out = "#!/bin/sh\n# One task of the array is one shard of the sweep; it goes on where it was cut off.\n";
   out += fmt::format("#SBATCH --job-name={}\n#SBATCH --array=1-{}\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n",
@@ -63,12 +64,14 @@ std::string job_script(const SlurmOptions& options, std::size_t runs, const std:
   if (!options.walltime.empty()) out += fmt::format("#SBATCH --time={}\n", options.walltime);
   if (!options.partition.empty()) out += fmt::format("#SBATCH --partition={}\n", options.partition);
   for (const std::string& more : options.more) out += fmt::format("#SBATCH {}\n", more);
-  out += fmt::format("exec {} sweep {} --out {} --shard \"$SLURM_ARRAY_TASK_ID/{}\" --jobs {} --quiet\n", shell_word(program),
-                     shell_word((folder / "sweep.yaml").string()), shell_word(folder.string()), shards, options.jobs);
+  out += fmt::format("exec {} sweep {} --out {} --shard \"$SLURM_ARRAY_TASK_ID/{}\" --jobs {} --quiet\n",
+                     shell_word(program), shell_word((folder / "sweep.yaml").string()), shell_word(folder.string()),
+                     shards, options.jobs);
   return out;
 }
 
-std::string submit(const SlurmOptions& options, const Sweep& sweep, const std::string& program, const fs::path& folder) {
+std::string submit(const SlurmOptions& options, const Sweep& sweep, const std::string& program,
+                   const fs::path& folder) {
   const fs::path where = fs::absolute(folder);
   std::error_code error;
   fs::create_directories(where / "slurm", error);
@@ -77,8 +80,8 @@ std::string submit(const SlurmOptions& options, const Sweep& sweep, const std::s
   io::write_file(script, job_script(options, run_count(sweep), program, where, sweep.name));
   const Answer answer = call("sbatch --parsable " + shell_word(script.string()));
   if (answer.code == 127) {
-    throw InputError(fmt::format("--engine slurm: there is no `sbatch` here; {} is what it would be given",
-                                 script.string()));
+    throw InputError(
+        fmt::format("--engine slurm: there is no `sbatch` here; {} is what it would be given", script.string()));
   }
   if (answer.code != 0) throw InputError("--engine slurm: sbatch refused: " + answer.text);
   const std::string job = answer.text.substr(0, answer.text.find_first_of(";\n"));

@@ -10,12 +10,12 @@
 namespace wunderlich::sweep {
 
 struct SlurmOptions {
-  std::size_t shards = 0;          ///< 0: one for every 500 runs
-  int jobs = 1;                    ///< cores of a shard
-  std::string walltime;            ///< as sbatch takes it; empty: the partition's default
-  std::string partition;           ///< empty: the cluster's default
-  bool requeue = true;             ///< a shard whose node fails is done again; it goes on where it was
-  std::vector<std::string> more;   ///< further arguments of sbatch, `--mem=2G`
+  std::size_t shards = 0;         ///< 0: one for every 500 runs
+  int jobs = 1;                   ///< cores of a shard
+  std::string walltime;           ///< as sbatch takes it; empty: the partition's default
+  std::string partition;          ///< empty: the cluster's default
+  bool requeue = true;            ///< a shard whose node fails is done again; it goes on where it was
+  std::vector<std::string> more;  ///< further arguments of sbatch, `--mem=2G`
 };
 
 std::size_t shard_count(const SlurmOptions& options, std::size_t runs);

@@ -28,7 +28,6 @@ const std::vector<std::string> kFormats{"vtp", "glb", "pc2", "obj", "svg", "html
 void read_base(const Node& node, const std::string& folder, Sweep& sweep) {
   if (!node) refuse(node, "is missing; give the name of a shipped scene, a file, or the scene itself");
   if (node.value->kind == scene::Value::Kind::map) {
-    sweep.scene_name = sweep.name;
     sweep.scene_text = scene::to_yaml(*node.value);
     return;
   }
@@ -100,7 +99,8 @@ void check_axes(const std::vector<Node>& entries, const Sweep& sweep) {
   for (const Collected& result : sweep.collected) columns.insert(result.name);
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
     for (const std::string& name : sweep.axes[a].columns) {
-      if (!columns.insert(name).second) refuse(entries[a], fmt::format("column `{}` stands twice; give a `name`", name));
+      if (!columns.insert(name).second)
+        refuse(entries[a], fmt::format("column `{}` stands twice; give a `name`", name));
     }
     for (const std::string& assignment : sweep.axes[a].points.front().assignments) {
       const std::string key = key_part(assignment);
@@ -133,9 +133,18 @@ std::string standing_alone(const scene::Value& document, const Sweep& sweep) {
   scene::Value copy = document;
   scene::Value* base = copy.find("scene");
   if (base != nullptr) *base = scene::parse_document(sweep.scene_text, sweep.scene_name);
-  std::string text = scene::to_yaml(copy);
-  if (copy.find("name") == nullptr) text += fmt::format("name: {}\n", scene::shown(sweep.name));
-  return text;
+  const auto add = [&](const char* name, const std::string& text) {
+    if (copy.find(name) != nullptr) return;
+    scene::Value value;
+    value.kind = scene::Value::Kind::scalar;
+    value.text = text;
+    copy.names.push_back(name);
+    copy.name_places.push_back(document.place);
+    copy.items.push_back(std::move(value));
+  };
+  add("name", sweep.name);
+  add("scene_name", sweep.scene_name);
+  return scene::to_yaml(copy);
 }
 
 }  // namespace
@@ -147,10 +156,11 @@ Sweep read_sweep(const std::string& path) {
 Sweep read_sweep_text(const std::string& text, const std::string& source) {
   const scene::Value document = scene::parse_document(text, source);
   const Node root{&document, "", document.place};
-  require_keys(root, {"name", "title", "scene", "set", "axes", "collect", "fields", "keep", "timeout"});
+  require_keys(root, {"name", "title", "scene", "set", "axes", "collect", "fields", "keep", "timeout", "scene_name"});
   Sweep sweep;
   sweep.name = child(root, "name") ? word(child(root, "name")) : std::filesystem::path(source).stem().string();
   sweep.title = child(root, "title") ? word(child(root, "title")) : sweep.name;
+  sweep.scene_name = child(root, "scene_name") ? word(child(root, "scene_name")) : sweep.name;
   read_base(child(root, "scene"), std::filesystem::path(source).parent_path().string(), sweep);
   read_set(child(root, "set"), sweep);
   read_collected(child(root, "collect"), sweep);

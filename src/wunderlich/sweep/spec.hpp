@@ -12,9 +12,9 @@ namespace wunderlich::sweep {
 
 /// One value of an axis: what it is called in tables, and the keys it sets.
 struct AxisPoint {
-  std::vector<double> values;           ///< one a column; NaN where the value is a word
-  std::vector<std::string> words;       ///< the same as text
-  std::vector<std::string> assignments; ///< `key=value`
+  std::vector<double> values;            ///< one a column; NaN where the value is a word
+  std::vector<std::string> words;        ///< the same as text
+  std::vector<std::string> assignments;  ///< `key=value`
 };
 
 /// Columns that change together. A plain axis has one; zipped and sampled ones have several.
@@ -34,14 +34,14 @@ struct Sweep {
   std::string name;
   std::string title;
   std::string scene_name;
-  std::string scene_text;               ///< the base scene, whole
-  std::vector<std::string> assignments; ///< `key=value` of every run
-  std::vector<Axis> axes;               ///< runs are all their combinations, the last axis fastest
+  std::string scene_text;                ///< the base scene, whole
+  std::vector<std::string> assignments;  ///< `key=value` of every run
+  std::vector<Axis> axes;                ///< runs are all their combinations, the last axis fastest
   std::vector<Collected> collected;
-  std::vector<std::string> fields;      ///< by node: some of kappa, tau, eta, x, y, z
-  std::vector<std::string> keep;        ///< formats of a run folder for each run; none: its figures only
-  double timeout = 0;                   ///< of a run [s]; 0: none
-  std::string text;                     ///< the sweep as YAML that stands alone
+  std::vector<std::string> fields;  ///< by node: some of kappa, tau, eta, x, y, z
+  std::vector<std::string> keep;    ///< formats of a run folder for each run; none: its figures only
+  double timeout = 0;               ///< of a run [s]; 0: none
+  std::string text;                 ///< the sweep as YAML that stands alone
 };
 
 /// Reads a sweep file. Throws InputError with file, line and key: what the table of keys forbids, axes without values,
@@ -66,8 +66,8 @@ std::string key_of(const Sweep& sweep, std::size_t run);
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
-  double uniform();                         ///< in [0, 1)
-  std::size_t below(std::size_t n);         ///< in [0, n)
+  double uniform();                  ///< in [0, 1)
+  std::size_t below(std::size_t n);  ///< in [0, n)
 
  private:
   std::uint64_t next();

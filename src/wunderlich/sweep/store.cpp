@@ -53,7 +53,8 @@ Writer::Writer(const fs::path& folder, const std::string& name) : path_(folder /
   // Every line before a damaged one was written before it.
   const std::uint64_t sound =
       each_line(path_, [](std::uint64_t, const std::string& line) { return parse_line(line).has_value(); });
-  if (::ftruncate(file_, static_cast<off_t>(sound)) != 0) fail(path_, fmt::format("cannot be cut: {}", std::strerror(errno)));
+  if (::ftruncate(file_, static_cast<off_t>(sound)) != 0)
+    fail(path_, fmt::format("cannot be cut: {}", std::strerror(errno)));
 }
 
 Writer::~Writer() { ::close(file_); }

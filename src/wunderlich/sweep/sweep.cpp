@@ -85,7 +85,8 @@ void prepare_folder(const fs::path& folder, const Sweep& sweep) {
   std::error_code error;
   if (is_sweep_folder(folder)) {
     if (io::read_file(folder / kSweepFile) == sweep.text) return;
-    io::write_file(folder / kSweepFile, sweep.text);  // another sweep may share runs with it: they are known by what they are
+    io::write_file(folder / kSweepFile,
+                   sweep.text);  // another sweep may share runs with it: they are known by what they are
     return;
   }
   if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error))) {
@@ -120,16 +121,17 @@ Standing run_sweep(const fs::path& folder, const Sweep& sweep, const Options& op
     goes_on = goes_on && observer(now);
     return goes_on;
   };
-  run_pool({options.jobs, sweep.timeout}, [&] { return given < open.size() ? static_cast<long>(open[given++]) : -1L; },
-           [&](std::size_t run) { return line_of(execute(sweep, run, keep)); },
-           [&](const Done& done) {
-             const Record record = record_of(sweep, done);
-             writer.add(record);
-             ++now.finished, ++now.here;
-             now.troubled += record.status != Status::done;
-             report();
-           },
-           report);
+  run_pool(
+      {options.jobs, sweep.timeout}, [&] { return given < open.size() ? static_cast<long>(open[given++]) : -1L; },
+      [&](std::size_t run) { return line_of(execute(sweep, run, keep)); },
+      [&](const Done& done) {
+        const Record record = record_of(sweep, done);
+        writer.add(record);
+        ++now.finished, ++now.here;
+        now.troubled += record.status != Status::done;
+        report();
+      },
+      report);
   report();
   return now;
 }

@@ -94,7 +94,8 @@ void each_row(const Sweep& sweep, const Store& store, Visit visit) {
 /// Writes under another name first.
 class Stream {
  public:
-  explicit Stream(const fs::path& path) : path_(path), draft_(io::sibling(path, "partial")), out_(draft_, std::ios::binary) {}
+  explicit Stream(const fs::path& path)
+      : path_(path), draft_(io::sibling(path, "partial")), out_(draft_, std::ios::binary) {}
   Stream& operator<<(const std::string& text) {
     out_ << text;
     return *this;
@@ -233,9 +234,9 @@ std::size_t collect(const fs::path& folder, const Sweep& sweep, std::string_view
   });
   table.finish();
   write_fields(folder, sweep, store);
-  const Json all = {{"name", sweep.name},     {"title", sweep.title},   {"scene", sweep.scene_name},
-                    {"text", sweep.text},     {"program", program},     {"version", version},
-                    {"axes", data.axes},      {"status", data.status},  {"keys", data.keys},
+  const Json all = {{"name", sweep.name},      {"title", sweep.title},       {"scene", sweep.scene_name},
+                    {"text", sweep.text},      {"program", program},         {"version", version},
+                    {"axes", data.axes},       {"status", data.status},      {"keys", data.keys},
                     {"results", data.results}, {"kept", !sweep.keep.empty()}};
   io::write_file(folder / "report.html",
                  io::filled_page(page, all.dump(-1, ' ', false, Json::error_handler_t::replace)));
