@@ -22,7 +22,7 @@ class StoreTest : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder); }
 
   static Record record(int i) {
-    return {"key" + std::to_string(i), Status::done, "", "{\"summary\":{\"time\":" + std::to_string(i) + "}}"};
+    return {"key" + std::to_string(i), Status::done, "", 0, "{\"summary\":{\"time\":" + std::to_string(i) + "}}"};
   }
   fs::path log() const { return folder / "results" / "all.log"; }
 
@@ -30,7 +30,7 @@ class StoreTest : public ::testing::Test {
 };
 
 TEST(RecordLine, ComesBackAndKnowsDamage) {
-  const Record record{"abc", Status::timed_out, "took \"long\"\nenough", "{\"a\":[1,2.5]}"};
+  const Record record{"abc", Status::timed_out, "took \"long\"\nenough", 0.125, "{\"a\":[1,2.5]}"};
   std::string line = line_of(record);
   ASSERT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
   line.pop_back();
@@ -39,6 +39,7 @@ TEST(RecordLine, ComesBackAndKnowsDamage) {
   EXPECT_EQ(again->key, record.key);
   EXPECT_EQ(again->status, record.status);
   EXPECT_EQ(again->reason, record.reason);
+  EXPECT_EQ(again->seconds, record.seconds);
   EXPECT_EQ(again->body, record.body);
   for (std::size_t i = 0; i < line.size(); ++i) {
     std::string damaged = line;
@@ -53,7 +54,7 @@ TEST_F(StoreTest, FindsWhatWasAdded) {
     Writer writer(folder, "all");
     for (int i = 0; i < 10; ++i) writer.add(record(i));
   }
-  const Store store(folder);
+  Store store(folder);
   EXPECT_EQ(store.size(), 10u);
   ASSERT_NE(store.find("key7"), nullptr);
   EXPECT_EQ(store.read(*store.find("key7")).body, record(7).body);
@@ -74,7 +75,7 @@ TEST_F(StoreTest, ALineTornAnywhereIsCutOffAndTheRestGoesOn) {
       Writer writer(folder, "all");
       writer.add(record(5));
     }
-    const Store store(folder);
+    Store store(folder);
     EXPECT_EQ(store.size(), 3u) << cut;
     EXPECT_NE(store.find("key5"), nullptr);
     EXPECT_EQ(store.find("key2"), nullptr);

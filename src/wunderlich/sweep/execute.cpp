@@ -1,6 +1,7 @@
 #include "wunderlich/sweep/execute.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -60,6 +61,8 @@ void fill(const Sweep& sweep, const scene::Scene& scene, scene::RunResult& resul
 }  // namespace
 
 Record execute(const Sweep& sweep, std::size_t run, const Keep& keep) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
   Record record;
   record.key = key_of(sweep, run);
   try {
@@ -75,6 +78,7 @@ Record execute(const Sweep& sweep, std::size_t run, const Keep& keep) {
     record.status = Status::failed;
     record.reason = error.what();
   }
+  record.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return record;
 }
 

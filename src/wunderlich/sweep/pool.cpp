@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <stdexcept>
 #include <vector>
 
@@ -59,12 +60,16 @@ bool write_all(int file, const void* from, std::size_t size) {
   ::_exit(0);  // no destructors: what they would flush belongs to the parent
 }
 
+/// A process and the items it has been given: one under way, and one to go on with at once when that is done.
 struct Worker {
   pid_t process = -1;
   int channel = -1;
-  long item = -1;  ///< under way
-  Clock::time_point deadline;
+  std::deque<std::size_t> items;
+  Clock::time_point deadline;  ///< of the first
+  bool busy() const { return !items.empty(); }
 };
+
+constexpr std::size_t kGiven = 2;
 
 Worker start_worker(const std::vector<Worker>& others, const std::function<std::string(std::size_t)>& work) {
   int ends[2];
@@ -80,21 +85,15 @@ Worker start_worker(const std::vector<Worker>& others, const std::function<std::
     serve(ends[1], parent, work);
   }
   ::close(ends[1]);
-  return {process, ends[0], -1, {}};
+  return {process, ends[0], {}, {}};
 }
 
-void end(Worker& worker, bool kill) {
-  if (worker.process < 0) return;
+/// Ends a worker; says how it ended by itself, if it did.
+std::string end(Worker& worker, bool kill) {
+  if (worker.process < 0) return "";
   if (kill) ::kill(worker.process, SIGKILL);
   ::close(worker.channel);
-  ::waitpid(worker.process, nullptr, 0);
-  worker = {};
-}
-
-/// Why a worker that answers no more has ended.
-std::string last_words(Worker& worker) {
   int status = 0;
-  ::close(worker.channel);
   ::waitpid(worker.process, &status, 0);
   worker.process = -1, worker.channel = -1;
   if (WIFSIGNALED(status)) {
@@ -110,37 +109,53 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
   ~Pool() {
-    for (Worker& worker : workers_) end(worker, worker.item >= 0);
+    for (Worker& worker : workers_) end(worker, worker.busy());
   }
 
   void go(const std::function<long()>& next, const std::function<void(const Done&)>& done,
           const std::function<bool()>& goes_on) {
-    for (Worker& worker : workers_) give(worker, next);
+    for (std::size_t k = 0; k < kGiven; ++k) {
+      for (Worker& worker : workers_) give(worker, next);
+    }
     while (busy() && goes_on()) {
       wait();
       for (std::size_t i = 0; i < workers_.size(); ++i) {
         Done result;
         if (!take(workers_[i], ready_[i], result)) continue;
-        done(result);
         give(workers_[i], next);
+        done(result);
       }
     }
   }
 
  private:
   bool busy() const {
-    return std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) { return w.item >= 0; });
+    return std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) { return w.busy(); });
+  }
+
+  /// What a worker left undone goes before what is new.
+  long next_item(const std::function<long()>& next) {
+    if (left_.empty()) return next();
+    const std::size_t item = left_.back();
+    left_.pop_back();
+    return static_cast<long>(item);
   }
 
   void give(Worker& worker, const std::function<long()>& next) {
-    const long item = next();
-    if (item < 0) return;
-    if (worker.process < 0) worker = start_worker(workers_, work_);
-    const auto number = static_cast<std::uint64_t>(item);
-    worker.item = item;
-    worker.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                         std::chrono::duration<double>(options_.timeout > 0 ? options_.timeout : 1e9));
-    write_all(worker.channel, &number, sizeof number);  // if it is gone, reading will show it
+    while (worker.items.size() < kGiven) {
+      const long item = next_item(next);
+      if (item < 0) return;
+      if (worker.process < 0) worker = start_worker(workers_, work_);
+      if (!worker.busy()) start_clock(worker);
+      worker.items.push_back(static_cast<std::size_t>(item));
+      const auto number = static_cast<std::uint64_t>(item);
+      write_all(worker.channel, &number, sizeof number);  // if it is gone, reading will show it
+    }
+  }
+
+  void start_clock(Worker& worker) const {
+    const double seconds = options_.timeout > 0 ? options_.timeout : 1e9;
+    worker.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
   /// Until a worker answers, or one is late.
@@ -148,8 +163,8 @@ class Pool {
     std::vector<pollfd> files;
     Clock::time_point first = Clock::now() + std::chrono::milliseconds(200);
     for (const Worker& worker : workers_) {
-      files.push_back({worker.item >= 0 ? worker.channel : -1, POLLIN, 0});
-      if (worker.item >= 0) first = std::min(first, worker.deadline);
+      files.push_back({worker.busy() ? worker.channel : -1, POLLIN, 0});
+      if (worker.busy()) first = std::min(first, worker.deadline);
     }
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(first - Clock::now()).count();
     ::poll(files.data(), files.size(), static_cast<int>(std::max<long>(0, left + 1)));
@@ -158,30 +173,36 @@ class Pool {
   }
 
   bool take(Worker& worker, bool ready, Done& result) {
-    if (worker.item < 0) return false;
-    result.item = static_cast<std::size_t>(worker.item);
+    if (!worker.busy() || (!ready && Clock::now() < worker.deadline)) return false;
+    result.item = worker.items.front();
+    worker.items.pop_front();
     if (!ready) {
-      if (Clock::now() < worker.deadline) return false;
       end(worker, true);
       result.timed_out = true;
       result.failure = fmt::format("took longer than {:g} s", options_.timeout);
+    } else if (!read_result(worker.channel, result.result)) {
+      result.failure = end(worker, true);
+    } else {
+      start_clock(worker);
       return true;
     }
-    std::uint64_t size = 0;
-    bool whole = read_all(worker.channel, &size, sizeof size);
-    if (whole) {
-      result.result.resize(size);
-      whole = read_all(worker.channel, result.result.data(), size);
-    }
-    worker.item = -1;
-    if (!whole) result.failure = last_words(worker);
+    left_.insert(left_.end(), worker.items.begin(), worker.items.end());  // never begun
+    worker.items.clear();
     return true;
+  }
+
+  static bool read_result(int channel, std::string& result) {
+    std::uint64_t size = 0;
+    if (!read_all(channel, &size, sizeof size)) return false;
+    result.resize(size);
+    return read_all(channel, result.data(), size);
   }
 
   PoolOptions options_;
   const std::function<std::string(std::size_t)>& work_;
   std::vector<Worker> workers_;
   std::vector<bool> ready_;
+  std::vector<std::size_t> left_;  ///< given to workers that died before they came to it
 };
 
 }  // namespace

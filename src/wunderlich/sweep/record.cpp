@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "wunderlich/io/bytes.hpp"
@@ -21,27 +23,31 @@ constexpr std::size_t kDigits = 16;  // of a checksum
 const char* status_name(Status status) { return names[static_cast<std::size_t>(status)]; }
 
 std::string line_of(const Record& record) {
-  Json head = {{"key", record.key}, {"status", status_name(record.status)}};
-  if (!record.reason.empty()) head["reason"] = record.reason;
-  if (!record.body.empty()) head["body"] = Json::parse(record.body);
-  const std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return fmt::format("{:016x} {}\n", io::checksum(text), text);
+  const std::string reason = Json(record.reason).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = fmt::format("{}\t{}\t{}\t{}\t{}", record.key, status_name(record.status), record.seconds,
+                                       reason, record.body);
+  return fmt::format("{:016x}\t{}\n", io::checksum(text), text);
 }
 
 std::optional<Record> parse_line(std::string_view line) {
-  if (line.size() < kDigits + 3 || line[kDigits] != ' ') return {};
-  const std::string_view text = line.substr(kDigits + 1);
+  if (line.size() < kDigits + 1 || line[kDigits] != '\t') return {};
+  std::string_view text = line.substr(kDigits + 1);
   if (fmt::format("{:016x}", io::checksum(text)) != line.substr(0, kDigits)) return {};
-  const Json head = Json::parse(text, nullptr, false);
-  if (!head.is_object()) return {};
-  Record record;
-  record.key = head.value("key", "");
-  record.reason = head.value("reason", "");
-  const std::string status = head.value("status", "");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (status == names[i]) record.status = static_cast<Status>(i);
+  std::array<std::string_view, 5> field;
+  for (std::string_view& part : field) {
+    const std::size_t end = std::min(text.find('\t'), text.size());
+    part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
-  if (head.contains("body")) record.body = head["body"].dump();
+  Record record;
+  record.key = field[0];
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (field[1] == names[i]) record.status = static_cast<Status>(i);
+  }
+  record.seconds = std::strtod(std::string(field[2]).c_str(), nullptr);
+  const Json reason = Json::parse(field[3], nullptr, false);
+  if (reason.is_string()) record.reason = reason.get<std::string>();
+  record.body = field[4];
   return record;
 }
 

@@ -21,6 +21,7 @@ struct Record {
   std::string key;
   Status status = Status::failed;
   std::string reason;  ///< why it is not done
+  double seconds = 0;  ///< from reading the scene to the record; 0 where the process did not get there
   std::string body;    ///< JSON: `summary`, `shape`, `fields`; empty where there is nothing
 };
 

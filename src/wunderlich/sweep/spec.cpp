@@ -110,10 +110,11 @@ void check_axes(const std::vector<Node>& entries, const Sweep& sweep) {
   double runs = 1;
   for (const Axis& axis : sweep.axes) runs *= static_cast<double>(axis.points.size());
   if (runs > kMostRuns) refuse(entries.back(), fmt::format("makes {:g} runs; at most {:g}", runs, kMostRuns));
-  constexpr std::size_t kTried = 100;  // of an axis: more would take longer than some sweeps
+  constexpr std::size_t kTried = 10;  // of an axis: more would take longer than some sweeps
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
-    const std::size_t count = sweep.axes[a].points.size(), stride = std::max<std::size_t>(1, count / kTried);
-    for (std::size_t i = 0; i < count; i += stride) {
+    const std::size_t count = sweep.axes[a].points.size(), tried = std::min(count, kTried);
+    for (std::size_t k = 0; k < tried; ++k) {
+      const std::size_t i = tried == 1 ? 0 : k * (count - 1) / (tried - 1);
       std::vector<std::string> assignments = sweep.assignments;
       for (std::size_t b = 0; b < sweep.axes.size(); ++b) {
         const AxisPoint& point = sweep.axes[b].points[a == b ? i : 0];

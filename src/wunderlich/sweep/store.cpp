@@ -91,8 +91,11 @@ const Found* Store::find(const std::string& key) const {
   return found == places_.end() ? nullptr : &found->second;
 }
 
-Record Store::read(const Found& found) const {
-  std::ifstream in(logs_[found.log], std::ios::binary);
+Record Store::read(const Found& found) {
+  open_.resize(logs_.size());
+  std::ifstream& in = open_[found.log];
+  if (!in.is_open()) in.open(logs_[found.log], std::ios::binary);
+  in.clear();
   in.seekg(static_cast<std::streamoff>(found.offset));
   std::string line;
   std::getline(in, line);

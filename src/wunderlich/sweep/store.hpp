@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -40,11 +41,12 @@ class Store {
  public:
   explicit Store(const std::filesystem::path& folder);
   const Found* find(const std::string& key) const;
-  Record read(const Found& found) const;
+  Record read(const Found& found);
   std::size_t size() const { return places_.size(); }
 
  private:
   std::vector<std::filesystem::path> logs_;
+  std::vector<std::ifstream> open_;  ///< the logs, as far as they have been read from
   std::unordered_map<std::string, Found> places_;
 };
 

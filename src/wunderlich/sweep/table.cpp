@@ -80,7 +80,7 @@ struct Row {
 
 /// Rows one after the other: only one is in memory.
 template <class Visit>
-void each_row(const Sweep& sweep, const Store& store, Visit visit) {
+void each_row(const Sweep& sweep, Store& store, Visit visit) {
   for (std::size_t run = 0; run < run_count(sweep); ++run) {
     Row row{key_of(sweep, run), {}, {}};
     if (const Found* found = store.find(row.key)) {
@@ -122,7 +122,7 @@ std::string head_row(const Sweep& sweep) {
       if (is_timing(result) == timing) out += fmt::format(",{}", cell(result.name));
     }
   }
-  out += ",wall_seconds\n";
+  out += ",run_seconds\n";
   return out;
 }
 
@@ -138,7 +138,7 @@ std::string csv_row(const Sweep& sweep, std::size_t run, const Row& row) {
       if (is_timing(result) == timing) out += fmt::format(",{}", number_cell(figure(row.body, result.path)));
     }
   }
-  return out + fmt::format(",{}\n", number_cell(figure(row.body, "timing.wall_seconds")));
+  return out + fmt::format(",{}\n", number_cell(row.record && row.record->seconds > 0 ? row.record->seconds : kNone));
 }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -176,20 +176,36 @@ std::string command_of(const Sweep& sweep, std::size_t run) {
   return out;
 }
 
-void write_run(const fs::path& folder, const Sweep& sweep, std::size_t run, const Row& row) {
-  if (!row.record) return;
-  const fs::path file = folder / "runs" / (row.key + ".json");
-  std::error_code error;
-  if (fs::exists(file, error)) return;
-  Json out = {{"sweep", sweep.name}, {"run", run}, {"status", status_name(row.record->status)}};
-  if (!row.record->reason.empty()) out["reason"] = row.record->reason;
-  out["command"] = command_of(sweep, run);
-  if (row.body.contains("summary")) out["summary"] = row.body["summary"];
-  if (row.body.contains("shape")) out["shape"] = row.body["shape"];
-  io::write_in_place(file, out.dump(2) + "\n");
+/// HTML's own characters in a text.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<') out += "&lt;";
+    else if (c == '&') out += "&amp;";
+    else out += c;
+  }
+  return out;
 }
 
-std::size_t longest_field(const Sweep& sweep, const Store& store) {
+/// What is kept of a run, as a part of the page of all runs.
+std::string run_entry(const Sweep& sweep, std::size_t run, const Row& row) {
+  if (!row.record) return "";
+  std::string out = fmt::format("<h2 id=\"{}\">run {}: {}</h2>\n<pre>", row.key, run, status_name(row.record->status));
+  if (!row.record->reason.empty()) out += escaped(row.record->reason) + "\n";
+  out += escaped(command_of(sweep, run)) + "\n";
+  out += escaped(row.record->body);  // as it is: taking it apart for a nicer look would cost a tenth of a small run
+  return out + "</pre>\n";
+}
+
+std::string runs_head(const Sweep& sweep) {
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: runs</title><style>body {{ font: 14px/1.4 "
+      "system-ui, sans-serif; margin: 2em }} h2 {{ font-size: 1em }} h2:target {{ background: #fde7b0 }}</style></head>\n"
+      "<body><h1>{0}: runs</h1>\n",
+      escaped(sweep.name));
+}
+
+std::size_t longest_field(const Sweep& sweep, Store& store) {
   std::size_t longest = 0;
   each_row(sweep, store, [&](std::size_t, const Row& row) {
     if (!row.body.contains("fields")) return;
@@ -198,7 +214,7 @@ std::size_t longest_field(const Sweep& sweep, const Store& store) {
   return longest;
 }
 
-void write_fields(const fs::path& folder, const Sweep& sweep, const Store& store) {
+void write_fields(const fs::path& folder, const Sweep& sweep, Store& store) {
   if (sweep.fields.empty()) return;
   const std::size_t columns = longest_field(sweep, store);
   for (const std::string& field : sweep.fields) {
@@ -219,19 +235,20 @@ void write_fields(const fs::path& folder, const Sweep& sweep, const Store& store
 }  // namespace
 
 std::size_t collect(const fs::path& folder, const Sweep& sweep, std::string_view page) {
-  const Store store(folder);
-  std::error_code error;
-  fs::create_directories(folder / "runs", error);
-  Stream table(folder / "table.csv");
+  Store store(folder);
+  Stream table(folder / "table.csv"), runs(folder / "runs.html");
   table << head_row(sweep);
+  runs << runs_head(sweep);
   PageData data(sweep);
   std::size_t there = 0;
   each_row(sweep, store, [&](std::size_t run, const Row& row) {
     there += row.record.has_value();
     table << csv_row(sweep, run, row);
     data.add(sweep, row);
-    write_run(folder, sweep, run, row);
+    runs << run_entry(sweep, run, row);
   });
+  runs << "</body></html>\n";
+  runs.finish();
   table.finish();
   write_fields(folder, sweep, store);
   const Json all = {{"name", sweep.name},      {"title", sweep.title},       {"scene", sweep.scene_name},

@@ -11,7 +11,7 @@ namespace wunderlich::sweep {
 
 /// Writes into the sweep's folder `table.csv` (a row a run, in order; columns that depend on the clock come last),
 /// FIELD.npy for each field (runs x nodes, NaN where there is none; as many nodes as the longest strip has),
-/// runs/KEY.json with what is kept of each run, and `report.html` from the page's template. At any time: runs that are
+/// `runs.html` with what is kept of each run, and `report.html` from the page's template, whose marks lead there. At any time: runs that are
 /// not done have empty cells. Returns how many are there.
 std::size_t collect(const std::filesystem::path& folder, const Sweep& sweep, std::string_view page);
 

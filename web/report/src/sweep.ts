@@ -26,7 +26,7 @@ const positions = (axis: Axis, column: number) => axis.values.map((value, i) => 
 
 function linkOf(sweep: Sweep, run: number): string | null {
   if (sweep.status[run] === 'open') return null;
-  return sweep.kept ? `runs/${sweep.keys[run]}/report.html` : `runs/${sweep.keys[run]}.json`;
+  return sweep.kept ? `runs/${sweep.keys[run]}/report.html` : `runs.html#${sweep.keys[run]}`;
 }
 
 function markOf(sweep: Sweep, name: string, run: number): Mark {
