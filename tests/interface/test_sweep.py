@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import random
 import signal
 import struct
@@ -25,7 +26,26 @@ collect:
 fields: [kappa]
 timeout: 60
 """
+RUNS = int(os.environ.get("WUNDERLICH_SWEEP_RUNS", "400"))
+KILLS = int(os.environ.get("WUNDERLICH_SWEEP_KILLS", "8"))
 TIMING = 2  # columns at the end that the clock decides
+
+
+def resident_kb(process):
+    """Resident memory, or None if the process is gone."""
+    try:
+        with open(f"/proc/{process}/status", encoding="utf-8") as file:
+            return next((int(line.split()[1]) for line in file if line.startswith("VmRSS")), None)
+    except OSError:
+        return None
+
+
+def children_of(process):
+    try:
+        with open(f"/proc/{process}/task/{process}/children", encoding="utf-8") as file:
+            return file.read().split()
+    except OSError:
+        return []
 
 
 class Sweep(ProgramTest):
@@ -74,12 +94,14 @@ class Sweep(ProgramTest):
         self.assertAlmostEqual(max(abs(v) for v in values[:13]), float(self.table()[0]["largest_curvature"]), delta=1e-15)
 
     def test_killed_anywhere_it_goes_on_and_ends_the_same(self):
-        self.sweep(40)
-        self.expect(0, "sweep", "sweep.yaml", "--out", "whole", "--quiet")
+        self.sweep(RUNS // 4)
         dice = random.Random(4)
-        for _ in range(8):
+        start = time.monotonic()
+        self.expect(0, "sweep", "sweep.yaml", "--out", "whole", "--quiet")
+        whole = time.monotonic() - start
+        for _ in range(KILLS):
             process = subprocess.Popen([PROGRAM, "sweep", "sweep.yaml", "--out", "cut", "--quiet"], cwd=self.folder)
-            time.sleep(dice.uniform(0.01, 0.1))
+            time.sleep(dice.uniform(0.01, 1.8 * whole / KILLS))
             process.send_signal(signal.SIGKILL)
             process.wait()
         self.expect(0, "sweep", "sweep.yaml", "--out", "cut", "--quiet")
@@ -88,6 +110,22 @@ class Sweep(ProgramTest):
         lines = (self.folder / "cut/results/all.log").read_text().splitlines()
         keys = [line.split("\t")[1] for line in lines]
         self.assertEqual(len(keys), len(set(keys)), "a run was done twice")
+
+    def test_memory_does_not_grow(self):
+        self.sweep(max(1000, RUNS // 4))
+        process = subprocess.Popen([PROGRAM, "sweep", "sweep.yaml", "--out", "there", "--quiet", "--jobs", "1",
+                                    "--shard", "1/2"], cwd=self.folder)  # of a shard no page is made at the end
+        sizes = []
+        while process.poll() is None:
+            worker = children_of(process.pid)
+            sizes.append((resident_kb(process.pid), resident_kb(worker[0]) if worker else None))
+            time.sleep(0.05)
+        self.assertEqual(process.returncode, 0)
+        for who in (0, 1):
+            seen = [size[who] for size in sizes if size[who]]
+            quarter = seen[len(seen) // 4:-1]  # the first runs make what later ones use again
+            self.assertGreater(len(quarter), 4)
+            self.assertLess(max(quarter) - min(quarter), 400, f"kB, {'worker' if who else 'parent'}: {seen}")
 
     def test_shards_make_the_same_table(self):
         self.sweep()

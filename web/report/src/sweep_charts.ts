@@ -64,13 +64,15 @@ export interface LineChart {
 
 export function lineChart({ xLabel, log, joined, series }: LineChart): Element {
   const out = frame(xLabel, 'result');
+  const keyed = series.some(({ name }) => name !== '');
+  const room = inner.width - (keyed ? 78 : 0);   // beside the lines stands what they are
   const [x0, x1] = range(series.flatMap((s) => s.marks.map((m) => m.x)));
   const [y0, y1] = range(series.flatMap((s) => s.marks.map((m) => m.value)));
   const scale = (x: number) => (log && x0 > 0 ? Math.log(x / x0) / Math.log(x1 / x0) : (x - x0) / (x1 - x0));
-  const px = (x: number) => size.left + inner.width * scale(x);
+  const px = (x: number) => size.left + room * scale(x);
   const py = (y: number) => size.top + inner.height * (1 - (y - y0) / (y1 - y0));
   for (const y of ticks(y0, y1, false)) {
-    out.append(svg('line', { x1: size.left, x2: size.left + inner.width, y1: py(y), y2: py(y), class: 'grid' }),
+    out.append(svg('line', { x1: size.left, x2: size.left + room, y1: py(y), y2: py(y), class: 'grid' }),
       svg('text', { x: size.left - 6, y: py(y) + 4, 'text-anchor': 'end' }, number(y, 3)));
   }
   for (const x of ticks(x0, x1, log)) {
@@ -86,7 +88,7 @@ export function lineChart({ xLabel, log, joined, series }: LineChart): Element {
     for (const m of there) {
       out.append(linked(m, svg('circle', { cx: px(m.x).toFixed(1), cy: py(m.value as number).toFixed(1), r: joined ? 2.4 : 2, fill: colour })));
     }
-    if (name) out.append(svg('text', { x: size.left + inner.width - 4, y: size.top + 12 + 14 * k, 'text-anchor': 'end', fill: colour, class: 'key' }, name));
+    if (name) out.append(svg('text', { x: size.left + room + 8, y: size.top + 12 + 14 * k, style: `fill: ${colour}`, class: 'key' }, name));
   });
   return out;
 }
