@@ -23,7 +23,7 @@ MORE = {
     "twist-release-soft": {"set": ["solver.duration=0.3"]},
     "slide-cylinder": {"set": ["solver.duration=0.4"]},
     "swing": {"set": ["solver.duration=0.72"]},
-    "knot": {"keys": ["+"] * 7},
+    "knot": {"set": ["solver.duration=4.2"], "keys": ["ArrowUp"] * 9 + ["+"] * 18},
     "whip": {"set": ["solver.duration=0.6"]},
 }
 
