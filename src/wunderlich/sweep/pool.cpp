@@ -155,7 +155,8 @@ class Pool {
 
   void start_clock(Worker& worker) const {
     const double seconds = options_.timeout > 0 ? options_.timeout : 1e9;
-    worker.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    worker.deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
   /// Until a worker answers, or one is late.

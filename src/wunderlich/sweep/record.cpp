@@ -24,8 +24,8 @@ const char* status_name(Status status) { return names[static_cast<std::size_t>(s
 
 std::string line_of(const Record& record) {
   const std::string reason = Json(record.reason).dump(-1, ' ', false, Json::error_handler_t::replace);
-  const std::string text = fmt::format("{}\t{}\t{}\t{}\t{}", record.key, status_name(record.status), record.seconds,
-                                       reason, record.body);
+  const std::string text =
+      fmt::format("{}\t{}\t{}\t{}\t{}", record.key, status_name(record.status), record.seconds, reason, record.body);
   return fmt::format("{:016x}\t{}\n", io::checksum(text), text);
 }
 

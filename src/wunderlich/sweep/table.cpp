@@ -180,9 +180,12 @@ std::string command_of(const Sweep& sweep, std::size_t run) {
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '&') out += "&amp;";
-    else out += c;
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
   }
   return out;
 }
@@ -199,8 +202,10 @@ std::string run_entry(const Sweep& sweep, std::size_t run, const Row& row) {
 
 std::string runs_head(const Sweep& sweep) {
   return fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: runs</title><style>body {{ font: 14px/1.4 "
-      "system-ui, sans-serif; margin: 2em }} h2 {{ font-size: 1em }} h2:target {{ background: #fde7b0 }}</style></head>\n"
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: runs</title><style>body {{ font: "
+      "14px/1.4 "
+      "system-ui, sans-serif; margin: 2em }} h2 {{ font-size: 1em }} h2:target {{ background: #fde7b0 "
+      "}}</style></head>\n"
       "<body><h1>{0}: runs</h1>\n",
       escaped(sweep.name));
 }
