@@ -90,7 +90,9 @@ struct Lying {
         round ? contact::Shape(contact::Cylinder{kRadius, 1e9}) : contact::Shape(contact::HalfSpace{});
     surroundings.obstacles = {solid(shape, Vec3(0, 0, round ? -kRadius : 0), round ? Vec3::UnitX() : Vec3::UnitZ(), 0)};
     solver::place_solids(ribbon, surroundings, 0, problem.contact);
-    Pose base{Vec3(0, 0, 0.9 * kDistance + problem.contact.margin), geometry::straight_state(ribbon).q.front()};
+    const double side = ribbon.rest_length.front() / problem.contact.along, cell = kWidth / problem.contact.across;
+    const double margin = round ? (side * side + cell * cell) / (8 * kRadius) : 0;
+    Pose base{Vec3(0, 0, 0.9 * kDistance + margin), geometry::straight_state(ribbon).q.front()};
     chain = geometry::straight_chain(ribbon, base);
     const auto nodes = static_cast<std::size_t>(ribbon.node_count());
     problem.force.assign(nodes, Vec3::Zero());

@@ -59,7 +59,8 @@ Capstan capstan(double friction, double share) {
     spec.segments = static_cast<int>(spec.spacing.size());
     spec.length = kShorter + longer + kFolds * facet;
     solver::place_solids(geometry::make_ribbon(spec), surroundings, 0, contact);
-    if (pass == 0) radius += contact.margin + 0.89 * contact.distance;
+    const double side = facet / contact.along, cell = spec.width / contact.across;
+    if (pass == 0) radius += (side * side + cell * cell) / (8 * kRadius) + 0.89 * contact.distance;
   }
   Motion m = make_motion(spec, surroundings);
   m.options.integrator = implicit::Integrator::euler;

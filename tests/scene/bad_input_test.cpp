@@ -52,6 +52,9 @@ TEST(BadInput, SeveralRibbons) {
 TEST(BadInput, SelfContactOfLoadsWithoutAPotential) {
   const std::string torque = "clamps: [{at: start}]\nforces: [{at: end, torque: [1, 0, 0]}]\ncontact: {self: true}";
   expect_all(message_of(strip + torque), {"bad.yaml:3:", "forces.0", "have no potential", "`contact.self: true`"});
+  expect_all(message_of(strip + torque + "\nsolver: {method: equilibrium}"), {"forces.0", "have no potential"});
+  // A method that needs none takes them.
+  EXPECT_EQ(message_of(strip + torque + "\nsolver: {method: two-stage}"), "accepted");
 }
 
 TEST(BadInput, FrictionOfTheStripOnItselfNeedsMotion) {

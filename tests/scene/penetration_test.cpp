@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "solver/paths.hpp"
+#include "support/clearance.hpp"
 #include "support/crossings.hpp"
 #include "wunderlich/scene/read.hpp"
 #include "wunderlich/scene/recording.hpp"
@@ -77,20 +79,27 @@ void expect_clear(const std::string& name, double until, double allowed, std::ve
   const auto& obstacles = scene.surroundings.obstacles;
   ASSERT_TRUE(!obstacles.empty() || scene.surroundings.contact.self);
   Placed strips;
+  const auto& [distance, thickness] =
+      std::pair(scene.surroundings.contact.distance, scene.surroundings.contact.thickness);
   double least = 1e9;
   int touched = 0;
   for (const Record& record : result.progress.records) {
     place(scene, record, strips);
+    double now = 1e9;
     for (const solver::StripPlace& strip : strips.places) {
-      for (const auto& obstacle : obstacles) least = std::min(least, distance_to(obstacle, record.history.time, strip));
+      for (const auto& obstacle : obstacles) now = std::min(now, distance_to(obstacle, record.history.time, strip));
     }
-    touched += least < scene.surroundings.contact.distance ? 1 : 0;
+    least = std::min(least, now);
+    // What is nearer along the strip than its width need not touch.
+    if (scene.surroundings.contact.self) now = std::min(now, testing::clearance(strips.places, scene.ribbon.width));
+    // Forces begin at the distance beyond what points keep, half of it where rulings do not lean.
+    touched += now < thickness + 1.5 * distance ? 1 : 0;
     if (!scene.surroundings.contact.self) continue;
     ASSERT_EQ(testing::crossings(strips.places), 0) << name << " at " << record.history.time;
   }
   std::printf("  %-16s %4zu records, smallest distance to a solid %.3g m, %d touch\n", name.c_str(),
               result.progress.records.size(), least, touched);
-  const double thickness = scene.surroundings.contact.thickness;
+  EXPECT_GT(touched, 0) << name << " touches nothing";
   EXPECT_GT(least, thickness - allowed) << name;
   // What the run says of itself is a bound from below, of all steps.
   ASSERT_TRUE(result.summary.contact);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/clearance.hpp"
 #include "two_stage/drops.hpp"
 #include "wunderlich/contact/triangle_mesh.hpp"
 #include "wunderlich/energy/elastic.hpp"
@@ -203,6 +204,67 @@ TEST(TwoStagePairs, AHeapNowhereGoesThroughItself) {
   Drop loose = heap(plane, false);
   go(0.45, 2e-3, 3, loose);
   EXPECT_GT(loose.crossings, 0);  // it would
+}
+
+TEST(TwoStagePairs, ThicknessIsKeptFromItself) {
+  Drop d = heap(solid(contact::HalfSpace{}, {Vec3::Zero(), Quat::Identity()}, 0.3), true);
+  const double thickness = d.surroundings.contact.thickness = 1e-3, distance = d.surroundings.contact.distance;
+  double least = 1;
+  for (int k = 0; k < 45; ++k) {
+    go(1e-2, 2e-3, 5, d);
+    geometry::Chain chain;
+    geometry::Kinematics kinematics;
+    const solver::StripPlace place = placed(d, chain, kinematics);
+    least = std::min(least, clearance({&place, 1}, 3 * (distance + thickness)));
+  }
+  std::printf("  nearest to itself %.4f mm\n", 1e3 * least);
+  EXPECT_GT(least, thickness);
+  EXPECT_LT(least, thickness + distance);  // it got there
+  EXPECT_EQ(d.crossings, 0);
+}
+
+/// How the pairs of a heap rub: how many stick and slide, how much more one pulls than Coulomb says, and how far off
+/// the pull is where it slides, both over Coulomb's.
+struct Rubbing {
+  int sticking = 0, sliding = 0;
+  double over = -1, off = 0;
+};
+
+Rubbing rub(double friction, double duration) {
+  Drop d = heap(solid(contact::HalfSpace{}, {Vec3::Zero(), Quat::Identity()}, 0.3), true);
+  d.surroundings.contact.friction = friction;
+  d.c.options.ode.damping_tangent = d.c.options.ode.damping_normal = 5;
+  Rubbing out;
+  while (d.c.state.shape.time < duration) {
+    go(2e-3, 2e-3, 1000, d);
+    for (const Touch& touch : d.c.work.touches) {
+      if (touch.solid != two_stage::kItself || !(touch.push > 0)) continue;
+      Vec3 way = -touch.from;
+      for (const two_stage::Arm& arm : touch.arms()) {
+        way += arm.weight * two_stage::material_place(d.c.state.shape, arm.place, arm.eta_start);
+      }
+      way -= way.dot(touch.normal) * touch.normal;
+      const double most = friction * touch.push;
+      out.over = std::max(out.over, touch.drag.norm() / most - 1);
+      if (way.norm() > 1e-5) out.off = std::max(out.off, (touch.drag / most + way.normalized()).norm());
+      out.sliding += way.norm() > 1e-5;
+      out.sticking += way.norm() < 1e-7;
+    }
+  }
+  return out;
+}
+
+/// Pairs that stick pull at most as Coulomb says, those that slide just so, against their way.
+TEST(TwoStagePairs, FrictionOnItselfIsCoulombs) {
+  const Rubbing slips = rub(0.3, 1.2), holds = rub(0.8, 1.2);
+  std::printf("  %d and %d stick, %d and %d slide\n", slips.sticking, holds.sticking, slips.sliding, holds.sliding);
+  show("pull over Coulomb's, less 1", std::max(slips.over, holds.over), 1e-6);
+  show("pull of what slides off Coulomb's, over it", slips.off, 0.05);
+  EXPECT_LT(slips.over, 1e-6);
+  EXPECT_LT(holds.over, 1e-6);
+  EXPECT_LT(slips.off, 0.05);
+  EXPECT_GT(slips.sliding, 100);
+  EXPECT_GT(holds.sticking, 50);
 }
 
 /// Meshes, stiffness, speeds and poses at random, of strips that feel themselves.

@@ -106,19 +106,24 @@ double clearance(const Drop& d) {
   return least - d.surroundings.contact.thickness;
 }
 
+solver::StripPlace placed(const Drop& d, geometry::Chain& chain, geometry::Kinematics& kinematics) {
+  const geometry::State& shape = d.c.state.shape;
+  chain.eta = shape.eta;
+  kinematics.r = shape.r;
+  kinematics.frame.clear();
+  for (std::size_t i = 0; i < shape.r.size(); ++i) {
+    kinematics.frame.push_back(shape.q[i == 0 ? 0 : i - 1].toRotationMatrix());
+  }
+  return {d.c.ribbon, chain, kinematics};
+}
+
 namespace {
 
 /// Facets of the reconstructed surface that go through each other.
 int crossings_now(const Drop& d) {
-  const geometry::State& shape = d.c.state.shape;
   geometry::Chain chain;
   geometry::Kinematics kinematics;
-  chain.eta = shape.eta;
-  kinematics.r = shape.r;
-  for (std::size_t i = 0; i < shape.r.size(); ++i) {
-    kinematics.frame.push_back(shape.q[i == 0 ? 0 : i - 1].toRotationMatrix());
-  }
-  const solver::StripPlace place{d.c.ribbon, chain, kinematics};
+  const solver::StripPlace place = placed(d, chain, kinematics);
   return crossings({&place, 1});
 }
 

@@ -5,6 +5,7 @@
 
 #include "support/random_state.hpp"
 #include "two_stage/cases.hpp"
+#include "wunderlich/solver/self_contact.hpp"
 #include "wunderlich/solver/two_stage/contact_rows.hpp"
 
 namespace wunderlich::testing {
@@ -49,6 +50,9 @@ Drop drop(double bending_stiffness, int segments, const std::vector<constraint::
 
 /// Smallest distance of many points of each facet.
 double clearance(const Drop& d);
+
+/// The strip as the searches of the tests take it; what it refers to is in the two that are filled.
+solver::StripPlace placed(const Drop& d, geometry::Chain& chain, geometry::Kinematics& kinematics);
 
 /// Goes on for `duration`; looks at the facets every `look` steps. Returns the last report.
 two_stage::StepReport go(double duration, double dt, int look, Drop& d);

@@ -6,6 +6,8 @@
 
 namespace wunderlich::contact {
 
+inline constexpr double kLeastShare = 0.1;  ///< of a gap that one step of Newton's leaves
+
 /// -(d - reach)^2 ln(d/reach) of a distance d < reach, with log = ln(d/reach), which is taken once for a point and used
 /// for value and slopes. Infinite where log is minus infinity.   @eq Li2020:6
 inline double barrier_value(double d, double reach, double log) { return -(d - reach) * (d - reach) * log; }

@@ -31,6 +31,11 @@ struct Extent {
   }
 };
 
+/// Distance between two boxes, 0 where they overlap [m].
+inline double apart(const Extent& a, const Extent& b) {
+  return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+}
+
 /// Where coordinates are whole numbers from 0 to 2^20 - 1; what is outside is at its border.
 struct Grid {
   Vec3 low = Vec3::Zero();    ///< [m]

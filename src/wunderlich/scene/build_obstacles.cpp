@@ -113,7 +113,7 @@ std::vector<Obstacle> build_obstacles(const Cell& root, int segments) {
   for (std::size_t i = 0; i < count(list); ++i) {
     obstacles.push_back(obstacle_of(element(list, i), child(root, "contact")));
     if (equilibrium && obstacles.back().friction > 0) {
-      fail(element(list, i), "friction has no effect with `solver.method: equilibrium`; use `implicit`");
+      fail(element(list, i), "friction has no effect with `solver.method: equilibrium`; use `implicit` or `two-stage`");
     }
   }
   return obstacles;
@@ -127,7 +127,7 @@ constraint::Contact build_contact(const Cell& root, double width) {
   }
   const Cell friction = child(cell, "friction");
   if (boolean(self) && number(friction) > 0 && method_of(root) == Method::equilibrium) {
-    fail(friction, "has no effect with `solver.method: equilibrium`; use `implicit`");
+    fail(friction, "has no effect with `solver.method: equilibrium`; use `implicit` or `two-stage`");
   }
   const Cell distance = child(cell, "distance");
   return {distance.value != nullptr ? number(distance) : width / 30, number(child(cell, "thickness")), boolean(self),

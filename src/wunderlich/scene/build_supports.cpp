@@ -206,14 +206,16 @@ constraint::Surroundings build_surroundings(const Cell& root, geometry::RibbonSp
   }
   surroundings.obstacles = build_obstacles(root, ribbon.segments);
   surroundings.contact = build_contact(root, ribbon.width);
-  for (std::size_t i = 0; i < surroundings.loads.size() && surroundings.contact.self; ++i) {
+  // Contact is a projection in the two-stage method, which asks for no potential.
+  const bool needs_potential = surroundings.contact.self && method_of(root) != Method::two_stage;
+  for (std::size_t i = 0; i < surroundings.loads.size() && needs_potential; ++i) {
     const auto has_torque = [](const LoadKey& k) { return !k.torque.isZero(0); };
     const constraint::Load& load = surroundings.loads[i];
     const bool turns = std::any_of(load.keys.begin(), load.keys.end(), has_torque);
     if (turns || load.frame == constraint::LoadFrame::material) {
       fail(element(forces, i),
-           "torques and forces that turn with the strip have no potential: not with "
-           "`contact.self: true`; turn a clamp instead");
+           "torques and forces that turn with the strip have no potential: with "
+           "`contact.self: true` only by `solver.method: two-stage`; turn a clamp instead");
     }
   }
   if (surroundings.supports.empty() && !moves) {

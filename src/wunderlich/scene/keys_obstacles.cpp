@@ -126,7 +126,7 @@ const std::vector<Key> table = {
      "",
      {},
      "Gap below which contact forces act; at rest a part of it stays. Two-stage: how fine the points are that feel a "
-     "solid; up to a quarter of it stays. Default: width/30."},
+     "solid; a quarter of it stays. Default: width/30."},
     {"contact.thickness",
      Type::number,
      "m",

@@ -1,6 +1,7 @@
 #include "wunderlich/scene/start.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -212,6 +213,22 @@ bool start_is_known(const Scene& scene) {
          scene.initial.shape == InitialShape::coil || scene.initial.shape == InitialShape::profile;
 }
 
+/// Distance of the strip to the only solid, by its points or exactly, and what must be there at least for the facet
+/// that lacks most of it [m].
+std::pair<double, double> plain_distance(const solver::ContactProblem& contact, const solver::ContactPoints& points) {
+  double lacks = solver::mesh_distance(contact.meshes, points.meshes), kept = contact.thickness;
+  double distance = lacks + contact.thickness;
+  for (const solver::ContactFacet& facet : points.facets) {
+    if (facet.least > lacks) continue;
+    lacks = facet.least;
+    kept = facet.kept;
+  }
+  for (const Vec3& at : points.at) {
+    distance = std::min(distance, contact::distance(contact.solids.front().shape, at).value);
+  }
+  return {distance, kept};
+}
+
 void check_obstacles(const Scene& scene) {
   const constraint::Surroundings& surroundings = scene.surroundings;
   const geometry::Ribbon ribbon = motion_ribbon(scene, 0);
@@ -231,11 +248,11 @@ void check_obstacles(const Scene& scene) {
     if (solver::is_inside_mesh(contact.meshes, points.meshes)) {
       throw InputError(scene.obstacle_places[i] + ": the strip starts inside; it must be outside all of its triangles");
     }
-    const double distance = solver::smallest_distance(contact, points) + contact.margin;
-    if (distance > contact.margin) continue;
+    if (solver::smallest_distance(contact, points) > 0) continue;
+    const auto [distance, kept] = plain_distance(contact, points);
     throw InputError(fmt::format("{}: the strip starts {:.3g} m {}; it must be more than {:.3g} m away from it",
                                  scene.obstacle_places[i], std::abs(distance), distance < 0 ? "inside" : "from it",
-                                 contact.margin));
+                                 kept));
   }
 }
 

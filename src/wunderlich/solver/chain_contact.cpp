@@ -15,11 +15,10 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kStiffness = 100;   // barrier over weight or bending: light contact, few iterations
-constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
-constexpr int kMostCells = 100;      // across a strip, and along a segment; coarser ones keep more
-constexpr double kRoom = 0.5;        // of the distance at which forces begin: what points keep ...
-constexpr double kLean = 0.35;       // ... where rulings lean by so much
+constexpr double kStiffness = 100;  // barrier over weight or bending: light contact, few iterations
+constexpr int kMostCells = 100;     // across a strip, and along a segment; where that is too coarse points keep more
+constexpr double kRoom = 0.5;       // of the distance at which forces begin: what points keep ...
+constexpr double kLean = 0.35;      // ... where rulings lean by so much
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double radius_of(const contact::Shape& shape) {
@@ -180,7 +179,7 @@ bool facet_may_go(const ContactProblem& problem, std::size_t index, const Contac
                   const ContactPoints& to) {
   const ContactFacet &a = from.facets[index], &b = to.facets[index];
   const double half_width = 0.5 * problem.width;
-  if (longest_way(a, b, half_width) + most_more(a, b, half_width) < (1 - kLeastShare) * a.least) return true;
+  if (longest_way(a, b, half_width) + most_more(a, b, half_width) < (1 - contact::kLeastShare) * a.least) return true;
   // Points stay as near to the middle as they are at both ends: lengths are convex along the way, too.
   const bool far = !(a.near && b.near);
   const double around = far ? std::max(radius(a, half_width), radius(b, half_width)) : 0;
@@ -195,7 +194,8 @@ bool facet_may_go(const ContactProblem& problem, std::size_t index, const Contac
       const double v = across_at(problem, k);
       const Beside p = point_of(problem, shape, from, a, offset, f, v);
       const Beside q = point_of(problem, shape, to, b, offset, f, v);
-      if (!(q.gap >= kLeastShare * std::min(p.gap, problem.distance)) || !(lowest_on_way(p, q) > 0)) return false;
+      if (!(q.gap >= contact::kLeastShare * std::min(p.gap, problem.distance)) || !(lowest_on_way(p, q) > 0))
+        return false;
     }
   }
   return true;
@@ -225,8 +225,6 @@ void set_grid(const Ribbon& ribbon, double radius, ContactProblem& problem) {
     problem.along = along;
     problem.across = static_cast<int>(across);
   }
-  const double side = longest / problem.along, cell = problem.width / problem.across;
-  problem.margin = (side * side + cell * cell) / (8 * radius);
 }
 
 }  // namespace

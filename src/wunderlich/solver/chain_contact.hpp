@@ -34,7 +34,6 @@ struct ContactProblem {
   MeshProblem meshes;              ///< those of triangles
   double distance = 0;             ///< at which forces begin [m]
   double thickness = 0;            ///< that stays between surface and solid [m]
-  double margin = 0;               ///< the most that points keep beyond it where rulings do not lean [m]
   double stiffness = 0;            ///< of the barrier, per area [N/m^3]
   double width = 0;                ///< of the strip [m]
   int along = 1;                   ///< cells of points along a segment

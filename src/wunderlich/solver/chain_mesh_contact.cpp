@@ -51,11 +51,6 @@ double weight_of(const Ribbon& ribbon, const MeshProblem& problem, const FacetPa
   return 0.5 * problem.stiffness * ribbon.rest_length[pair.segment] * ribbon.width;
 }
 
-/// Distance between two boxes, 0 where they overlap.
-double apart(const Extent& a, const Extent& b) {
-  return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
-}
-
 /// Around all corners, in space.
 Extent box_around(const Ribbon& ribbon, const Chain& chain, const Kinematics& k) {
   Extent box{k.r.front(), k.r.front()};

@@ -1,4 +1,5 @@
 // What solids of triangles leave free: ways, and where a strip may be.
+#include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/contact/travel.hpp"
 #include "wunderlich/solver/chain_mesh_contact.hpp"
 
@@ -8,16 +9,12 @@ using contact::Extent;
 using contact::PairPoints;
 using contact::TriangleMesh;
 
-namespace {
-
-constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
-
-}  // namespace
+namespace {}  // namespace
 
 bool mesh_may_go(const MeshProblem& problem, const MeshPoints& from, const MeshPoints& to, PairSearch& search) {
   if (problem.solids.empty()) return true;
   const std::size_t n = from.facets.size() / problem.solids.size();
-  const double least = kLeastShare * problem.distance;  // what is left of a gap that was large
+  const double least = contact::kLeastShare * problem.distance;  // what is left of a gap that was large
   for (std::size_t i = 0; i < problem.solids.size(); ++i) {
     if (from.placed[i] == 0 || to.placed[i] == 0) {
       Extent way = from.strip, solid = from.extents[i];
@@ -45,7 +42,7 @@ bool mesh_may_go(const MeshProblem& problem, const MeshPoints& from, const MeshP
       const PairPoints x0 = points_of(pair, facets0[pair.segment], mesh);
       const PairPoints x1 = points_of(pair, facets1[pair.segment], mesh);
       const double gap = contact::pair_distance(pair.kind, x0) - problem.thickness;
-      const double leave = gap > problem.distance ? least / gap : kLeastShare;
+      const double leave = gap > problem.distance ? least / gap : contact::kLeastShare;
       may = contact::free_share(pair.kind, x0, x1, problem.thickness, leave) >= 1;
     });
     if (!may) return false;

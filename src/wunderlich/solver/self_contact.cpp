@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/contact/travel.hpp"
 #include "wunderlich/contact/triangle_mesh.hpp"
 
@@ -16,12 +17,11 @@ using Strips = std::span<const StripPlace>;
 
 namespace {
 
-constexpr double kBending = 60;      // barrier over bending, and
-constexpr double kWeight = 100;      // over the weight of a segment: light contact, few iterations
-constexpr double kLeastShare = 0.1;  // of a gap that one step of Newton's leaves
-constexpr double kNeighbours = 2;    // gaps in the flat pattern up to which parts are neighbours
-constexpr double kParallel = 1e-3;   // of |e1|^2 |e2|^2: edges that count as parallel   @eq Li2020:18
-constexpr double kOpenSeam = 1;      // widths
+constexpr double kBending = 60;     // barrier over bending, and
+constexpr double kWeight = 100;     // over the weight of a segment: light contact, few iterations
+constexpr double kNeighbours = 2;   // gaps in the flat pattern up to which parts are neighbours
+constexpr double kParallel = 1e-3;  // of |e1|^2 |e2|^2: edges that count as parallel   @eq Li2020:18
+constexpr double kOpenSeam = 1;     // widths
 
 PairPoints points_of(const SelfPair& pair, const std::vector<Vec3>& corners) {
   PairPoints x;
@@ -152,7 +152,7 @@ void select(const SelfContact& problem, const std::vector<SelfPair>& candidates,
 /// May a pair go this way?
 bool may_go(const SelfContact& problem, const PairPoints& from, const PairPoints& to, PairKind kind) {
   const double gap = contact::pair_distance(kind, from) - problem.thickness;
-  const double least = kLeastShare * std::min(gap, problem.reach);
+  const double least = contact::kLeastShare * std::min(gap, problem.reach);
   double way = 0;
   for (std::size_t a = 0; a < 4; ++a) way = std::max(way, (to[a] - from[a]).squaredNorm());
   if (gap - 2 * std::sqrt(way) > least) return true;

@@ -81,7 +81,12 @@ void drag(const Ribbon& ribbon, const Options& options, double h, const geometry
   }
 }
 
-std::string why(const NewtonReport& report, double t, double h) {
+bool is_held(Paths paths) {
+  return std::any_of(paths.begin(), paths.end(), [](const PathProblem& p) { return !p.surroundings.supports.empty(); });
+}
+
+/// `held`: supports hold a strip.
+std::string why(const NewtonReport& report, double t, double h, bool held) {
   std::string text = "step of " + std::to_string(h) + " s to " + std::to_string(t) + " s: ";
   switch (report.outcome) {
     case NewtonOutcome::iteration_limit:
@@ -91,7 +96,10 @@ std::string why(const NewtonReport& report, double t, double h) {
       return text + "no step lowers the energy, node " + std::to_string(report.worst_node) +
              " moves most; supports may move too fast or ask for more than the strip can reach";
     case NewtonOutcome::singular:
-      return text + "the linear system is singular; supports may hold the same motion twice";
+      return text + (held
+                         ? "the linear system is singular; supports may hold the same motion twice"
+                         : "the linear system is singular or nearly so, though no support holds the strip; contact may "
+                           "press it harder than its segments can follow");
     case NewtonOutcome::converged:
       break;
   }
@@ -329,7 +337,7 @@ StepReport step(Paths paths, const Options& options, double t1, int halvings, St
     }
     report.newton = minimise(moving(paths, work), work.self, newton_options(options, halvings), work.newton);
     report.iterations += report.newton.iterations;
-    if (!report.newton.converged()) return fail(why(report.newton, t1, h));
+    if (!report.newton.converged()) return fail(why(report.newton, t1, h, is_held(paths)));
     const End end = finish_strips(paths, options, scheme, state, work);
     report.error = end.error;
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;

@@ -70,7 +70,7 @@ void record(const Nearest& nearest, const Workspace& work, StepReport& report) {
 
 /// What may be missing of a gap; pairs must not lose much of what they keep.
 double gap_tolerance(const Ribbon& ribbon, const Workspace& work) {
-  const bool pairs = work.corners.has_meshes || work.corners.self.active();
+  const bool pairs = work.corners.has_meshes || work.corners.has_cores || work.corners.self.active();
   const double of_width = kGapTolerance * ribbon.width;
   return pairs ? std::min(of_width, kPairTolerance * work.corners.margin) : of_width;
 }
@@ -85,6 +85,27 @@ bool project_once(const Options& options, bool touches, double tolerance, double
     return true;
   }
   return touches ? solve_contact_direct(tolerance, enough, kMostSweeps, work, report) : solve_equations(work);
+}
+
+/// Rounds ended without an end: is what is left within bounds? Counts it, or says why not.
+bool may_stay(const Ribbon& ribbon, const Options& options, const Nearest& nearest, const Workspace& work,
+              StepReport& report) {
+  if (nearest.passes) {
+    report.failure = "contact: parts that would go through each other could not be kept apart";
+    return false;
+  }
+  if (nearest.distance < -options.contact.most_penetration * ribbon.width || !std::isfinite(nearest.distance)) {
+    report.failure = "contact: the strip could not be brought apart from what it touches";
+    return false;
+  }
+  const bool loose = !(work.equations.worst_length <= options.opt.constraint_tolerance &&
+                       work.equations.worst_angle <= options.opt.constraint_tolerance);
+  if (loose && !options.opt.accept_inexact) {
+    report.failure = "contact: lengths and rulings could not be restored";
+    return false;
+  }
+  ++report.contact_unsettled;
+  return true;
 }
 
 }  // namespace
@@ -105,45 +126,29 @@ bool settle_contact(const Ribbon& ribbon, const Drive& drive, const Options& opt
     return true;
   }
   set_metric(ribbon, options, dt, work);
-  bool settled = false, first = true;
+  bool settled = false, on_the_way = true;  // nothing has been projected, or not as far as it should go
   double close = 0;
   for (int round = 0; round < options.contact.max_rounds; ++round) {
     if (!assemble_equations(ribbon, options, state.shape, work)) break;
     assemble_touches(ribbon, state.shape, work);
     const double depth = deepest(work);
-    const bool out = !first && depth <= tolerance;
+    const bool out = !on_the_way && depth <= tolerance;
     const bool equations_hold =
         work.equations.worst_length <= length_tolerance && work.equations.worst_angle <= angle_tolerance;
     settled = out && equations_hold && !nearest.passes;
-    if (settled || (out && equations_hold)) break;
+    if (out && equations_hold) break;
     if (round == 0) close = swept ? 0.1 * angle_tolerance * ribbon.width : kConeTolerance * depth;
     if (!project_once(options, !out, close, kEnough * tolerance, work, report)) break;
     ++report.contact_rounds;
     const double share = longest_motion(ribbon, state.shape, work);
     keep_forces(share, work);
     move_all(ribbon, work.motion, share, work, state.shape);
-    first = share < 1;
+    on_the_way = share < 1;
     nearest = find_touches(ribbon, state.shape, tolerance, work);
   }
   set_velocity(ribbon, options, dt, state, work);
   record(nearest, work, report);
-  if (settled) return true;
-  if (nearest.passes) {
-    report.failure = "contact: parts that would go through each other could not be kept apart";
-    return false;
-  }
-  if (nearest.distance < -options.contact.most_penetration * ribbon.width || !std::isfinite(nearest.distance)) {
-    report.failure = "contact: the strip could not be brought apart from what it touches";
-    return false;
-  }
-  const bool loose = !(work.equations.worst_length <= options.opt.constraint_tolerance &&
-                       work.equations.worst_angle <= options.opt.constraint_tolerance);
-  if (loose && !options.opt.accept_inexact) {
-    report.failure = "contact: lengths and rulings could not be restored";
-    return false;
-  }
-  ++report.contact_unsettled;
-  return true;
+  return settled || may_stay(ribbon, options, nearest, work, report);
 }
 
 }  // namespace wunderlich::solver::two_stage

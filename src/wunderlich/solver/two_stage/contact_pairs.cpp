@@ -14,7 +14,6 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kMargin = 0.25;   // of contact.distance
 constexpr double kPasses = 0.05;   // of the distance at the start, or of what is kept: parts that come nearer may pass
 constexpr double kFacing = 0.5;    // of the same: where the sides of parts that pass are told
 constexpr double kNowhere = 1e-9;  // of the width: parts that are not apart at the start
@@ -28,12 +27,18 @@ const contact::TriangleMesh& mesh_of(const Workspace& work, std::size_t solid) {
   return *std::get<contact::Polyhedron>(work.solids.solids[solid].shape).mesh;
 }
 
+const Vec3& vertex_of(const Workspace& work, std::size_t solid, int i) {
+  const Core& core = work.corners.cores[solid];
+  return core.count > 0 ? core.ends[static_cast<std::size_t>(i)]
+                        : mesh_of(work, solid).vertices[static_cast<std::size_t>(i)];
+}
+
 Way way_of(const Pair& pair, std::size_t solid, const Workspace& work) {
   const Corners& corners = work.corners;
   Way way;
   for (std::size_t k = 0; k < 4; ++k) {
     if (pair.corner[k] < 0) {
-      way.before[k] = way.now[k] = mesh_of(work, solid).vertices[static_cast<std::size_t>(pair.vertex[k])];
+      way.before[k] = way.now[k] = vertex_of(work, solid, pair.vertex[k]);
       continue;
     }
     const auto c = static_cast<std::size_t>(pair.corner[k]);
@@ -71,7 +76,10 @@ Meeting meeting_of(PairKind kind, const Way& way, double start, double kept) {
   return out;
 }
 
-double kept_by(const Workspace& work) { return work.solids.thickness + work.corners.margin; }
+double kept_by(const Workspace& work, std::size_t solid) {
+  const double radius = solid == kItself ? 0 : work.corners.cores[solid].radius;
+  return radius + work.solids.thickness + work.corners.margin;
+}
 
 /// Arms, normal and gap from a meeting. Of a solid the normal is outward, and only the strip's points are arms.
 void take_over(const Meeting& meeting, const Workspace& work, Touch& touch) {
@@ -120,7 +128,7 @@ bool is_there(const Touch& touch, const std::vector<Touch>& touches) {
 
 void look_at(const Pair& pair, std::size_t solid, double tolerance, Nearest& nearest, Workspace& work) {
   const Way way = way_of(pair, solid, work);
-  const double kept = kept_by(work), start = contact::pair_distance(pair.kind, way.before);
+  const double kept = kept_by(work, solid), start = contact::pair_distance(pair.kind, way.before);
   double longest = 0;
   for (std::size_t k = 0; k < 4; ++k) longest = std::max(longest, (way.now[k] - way.before[k]).squaredNorm());
   if (start - 2 * std::sqrt(longest) > kept) return;
@@ -152,31 +160,69 @@ void find_own_pairs(double tolerance, Nearest& nearest, Workspace& work) {
   }
 }
 
-/// Distance between two boxes, 0 where they overlap.
-double apart(const contact::Extent& a, const contact::Extent& b) {
-  return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+/// Corners of all facets at both ends of the step, in a solid's own frame.
+void place_facets(std::size_t solid, Workspace& work) {
+  Corners& corners = work.corners;
+  const std::size_t segments = corners.now.size() / 2 - 1;
+  corners.facets_before.resize(segments), corners.facets.resize(segments);
+  for (std::size_t s = 0; s < segments; ++s) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      corners.facets_before[s][k] = into(work.solids_before.solids[solid].pose, corners.before[2 * s + k]);
+      corners.facets[s][k] = into(work.solids.solids[solid].pose, corners.now[2 * s + k]);
+    }
+  }
+}
+
+/// Whatever is nearest to an axis is an edge that it crosses, or a face above its end. Edges along the strip follow the
+/// frames to the parallel error only, so that four corners may span a tetrahedron, however thin. All of that is met: no
+/// straight piece gets into it but across an edge or by an end.
+void find_pairs_with_core(std::size_t solid, double tolerance, Nearest& nearest, Workspace& work) {
+  static constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {2, 3}, {0, 2}, {1, 3}, {0, 3}, {1, 2}}};
+  static constexpr std::array<std::array<int, 3>, 4> kTriangles{{{0, 1, 2}, {1, 3, 2}, {0, 1, 3}, {0, 3, 2}}};
+  const Corners& corners = work.corners;
+  const Core& core = corners.cores[solid];
+  const double kept = kept_by(work, solid);
+  contact::Extent around{core.ends[0], core.ends[0]};
+  around.add(core.ends[static_cast<std::size_t>(core.count - 1)]);
+  place_facets(solid, work);
+  for (std::size_t s = 0; s < core.coarse.size(); ++s) {
+    if (core.coarse[s] == 0) continue;
+    contact::Extent box = box_of(corners.facets_before[s]);
+    box.add(box_of(corners.facets[s]));
+    const double away = contact::apart(box, around);
+    if (away > kept) {
+      nearest.gap = std::min(nearest.gap, away - kept + corners.margin);  // a bound from below
+      nearest.distance = std::min(nearest.distance, away - kept + corners.margin);
+      continue;
+    }
+    const int first = 2 * static_cast<int>(s);
+    for (const auto& edge : kEdges) {
+      if (core.count < 2) break;
+      look_at({PairKind::edge_edge, {first + edge[0], first + edge[1], -1, -1}, {-1, -1, 0, 1}}, solid, tolerance,
+              nearest, work);
+    }
+    for (const auto& t : kTriangles) {
+      for (int end = 0; end < core.count; ++end) {
+        look_at({PairKind::vertex_triangle, {-1, first + t[0], first + t[1], first + t[2]}, {end, -1, -1, -1}}, solid,
+                tolerance, nearest, work);
+      }
+    }
+  }
 }
 
 void find_pairs_with(std::size_t solid, double tolerance, Nearest& nearest, Workspace& work) {
   const contact::TriangleMesh& mesh = mesh_of(work, solid);
   const Corners& corners = work.corners;
-  const std::size_t segments = corners.now.size() / 2 - 1;
-  const double kept = kept_by(work);
-  std::vector<PairPoints>&before = work.corners.facets_before, &now = work.corners.facets;
-  before.resize(segments), now.resize(segments);
-  for (std::size_t s = 0; s < segments; ++s) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      before[s][k] = into(work.solids_before.solids[solid].pose, corners.before[2 * s + k]);
-      now[s][k] = into(work.solids.solids[solid].pose, corners.now[2 * s + k]);
-    }
-  }
+  const double kept = kept_by(work, solid);
+  place_facets(solid, work);
+  const std::vector<PairPoints>&before = corners.facets_before, &now = corners.facets;
   const auto widened = [&](contact::Extent box, const contact::Extent& end) {
     box.add(end);
     box.widen(kept);
     return box;
   };
-  gather(segments, work.corners.mesh_search, [&](std::size_t s) {
-    const double away = apart(widened(box_of(before[s]), box_of(now[s])), mesh.whole);
+  gather(now.size(), work.corners.mesh_search, [&](std::size_t s) {
+    const double away = contact::apart(widened(box_of(before[s]), box_of(now[s])), mesh.whole);
     nearest.gap = std::min(nearest.gap, away + corners.margin);  // a bound from below
     nearest.distance = std::min(nearest.distance, away + corners.margin);
     return !(away > 0);
@@ -193,6 +239,56 @@ void find_pairs_with(std::size_t solid, double tolerance, Nearest& nearest, Work
   });
 }
 
+/// The straight piece or point that a round solid is around. Where it has no end it is cut off beyond all of the
+/// strip's reach.
+void set_core(const contact::Shape& shape, double reach, Core& core) {
+  const auto piece = [&](double radius, double half_length) {
+    core.radius = radius;
+    core.count = half_length > 0 ? 2 : 1;
+    const Vec3 end(0, 0, std::min(std::max(half_length, 0.0), reach));
+    core.ends = {end, -end};
+  };
+  piece(0, 0);
+  core.count = 0;
+  if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) piece(sphere->radius, 0);
+  if (const auto* capsule = std::get_if<contact::Capsule>(&shape)) piece(capsule->radius, capsule->half_length);
+  if (const auto* cylinder = std::get_if<contact::Cylinder>(&shape)) {
+    piece(std::min(cylinder->radius, cylinder->half_length), cylinder->half_length - cylinder->radius);
+  }
+}
+
+/// The square of the distance to a center or an axis, less that of a point's place, is concave: on a chord of length c
+/// whose ends are at R nothing is nearer by more than c^2/8R. In a cell of the grid a point lies on a chord along a
+/// ruling whose ends lie on chords along the strip, so that both add up. Rulings may turn in the step: twice as much
+/// must fit into what is kept.
+bool is_coarse(const Ribbon& ribbon, const Workspace& work, std::size_t s, double radius) {
+  const std::vector<double>& eta = work.before.eta;
+  const double side = (ribbon.rest_length[s] + 0.5 * ribbon.width * std::abs(eta[s + 1] - eta[s])) / work.solids.along;
+  const double lean = std::max(std::abs(eta[s]), std::abs(eta[s + 1])), cell = ribbon.width / work.solids.across;
+  return 2 * (side * side + cell * cell * (1 + lean * lean)) > 8 * (radius + work.solids.thickness) * work.point_margin;
+}
+
+void set_cores(const Ribbon& ribbon, Workspace& work) {
+  Corners& corners = work.corners;
+  corners.cores.resize(work.solids.solids.size());
+  corners.has_meshes = corners.has_cores = false;
+  for (std::size_t i = 0; i < corners.cores.size(); ++i) {
+    Core& core = corners.cores[i];
+    const auto& solid = work.solids.solids[i];
+    corners.has_meshes = corners.has_meshes || std::holds_alternative<contact::Polyhedron>(solid.shape);
+    const double length = static_cast<double>(ribbon.rest_length.size()) *
+                          *std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end());
+    set_core(solid.shape, into(work.solids_before.solids[i].pose, work.before.r[0]).norm() + 4 * length, core);
+    core.coarse.assign(ribbon.rest_length.size(), 0);
+    for (std::size_t s = 0; s < core.coarse.size() && core.count > 0; ++s) {
+      core.coarse[s] = is_coarse(ribbon, work, s, core.radius);
+      corners.has_cores = corners.has_cores || core.coarse[s] != 0;
+    }
+  }
+}
+
+bool meets_pairs(const Corners& corners) { return corners.has_meshes || corners.has_cores || corners.self.active(); }
+
 void place_corners(const geometry::State& shape, const std::vector<Place>& places, std::vector<Vec3>& out) {
   out.clear();
   for (const Place& place : places) out.push_back(place_of(shape, place));
@@ -202,15 +298,12 @@ void place_corners(const geometry::State& shape, const std::vector<Place>& place
 
 void set_pairs(const Ribbon& ribbon, const constraint::Surroundings& surroundings, Workspace& work) {
   Corners& corners = work.corners;
-  corners.margin = kMargin * surroundings.contact.distance;
+  corners.margin = kKeeps * surroundings.contact.distance;
   corners.width = ribbon.width;
   corners.self.reach = 0;
   place_self(ribbon, surroundings, corners.margin, true, work.before.eta, corners.self);
-  corners.has_meshes = false;
-  for (const auto& solid : work.solids.solids) {
-    corners.has_meshes = corners.has_meshes || std::holds_alternative<contact::Polyhedron>(solid.shape);
-  }
-  if (!corners.has_meshes && !corners.self.active()) return;
+  set_cores(ribbon, work);
+  if (!meets_pairs(corners)) return;
   corners.place.clear();
   corners.eta_before.clear();
   for (std::size_t i = 0; i < work.before.r.size(); ++i) {
@@ -225,19 +318,23 @@ void set_pairs(const Ribbon& ribbon, const constraint::Surroundings& surrounding
 
 void find_pairs(const geometry::State& shape, double tolerance, Nearest& nearest, Workspace& work) {
   Corners& corners = work.corners;
-  if (!corners.has_meshes && !corners.self.active()) return;
+  if (!meets_pairs(corners)) return;
   place_corners(shape, corners.place, corners.now);
   if (corners.self.active()) find_own_pairs(tolerance, nearest, work);
   for (std::size_t i = 0; i < work.solids.solids.size(); ++i) {
-    if (!std::holds_alternative<contact::Polyhedron>(work.solids.solids[i].shape)) continue;
-    find_pairs_with(i, tolerance, nearest, work);
+    const Core& core = corners.cores[i];
+    if (std::holds_alternative<contact::Polyhedron>(work.solids.solids[i].shape)) {
+      find_pairs_with(i, tolerance, nearest, work);
+    } else if (std::find(core.coarse.begin(), core.coarse.end(), 1) != core.coarse.end()) {
+      find_pairs_with_core(i, tolerance, nearest, work);
+    }
   }
 }
 
 void refresh_pair(const Workspace& work, Touch& touch) {
   const Way way = way_of(*touch.pair, touch.solid, work);
   const double start = contact::pair_distance(touch.pair->kind, way.before);
-  take_over(meeting_of(touch.pair->kind, way, start, kept_by(work)), work, touch);
+  take_over(meeting_of(touch.pair->kind, way, start, kept_by(work, touch.solid)), work, touch);
 }
 
 }  // namespace wunderlich::solver::two_stage

@@ -105,12 +105,12 @@ Distance swept_distance(const contact::Shape& shape, const Vec3& before, const V
   return end;
 }
 
-double kept_by(const ContactProblem& solids) { return solids.thickness + solids.margin; }
+double kept_by(const Workspace& work) { return work.solids.thickness + work.point_margin; }
 
 double start_gap(const Touch& touch, const Workspace& work) {
   const ContactProblem::Solid& solid = work.solids_before.solids[touch.solid];
   return contact::distance(solid.shape, into(solid.pose, place_of(work.before, touch.arm[0].place))).value -
-         kept_by(work.solids_before);
+         kept_by(work);
 }
 
 /// Adds a point to the touches, unless one is there.
@@ -160,11 +160,14 @@ void choose(const std::vector<double>& gaps, double tolerance, const Add& add) {
   }
 }
 
-/// Does the solid have edges near, which points of a grid miss?
-bool has_edges(const contact::Shape& shape, const Facet& facet, double width) {
+/// Does the solid have edges near, which points of a grid miss? Of a cylinder that the facet meets by its axis too, all
+/// that is beyond the axis' end.
+bool has_edges(const contact::Shape& shape, const Core& core, const Facet& facet, double width) {
   if (std::holds_alternative<contact::Box>(shape)) return true;
   const auto* cylinder = std::get_if<contact::Cylinder>(&shape);
-  return cylinder != nullptr && std::abs(facet.at(0.5, 0).z()) + reach(facet, width) > cylinder->half_length;
+  if (cylinder == nullptr) return false;
+  const double end = core.coarse[facet.segment] != 0 ? core.ends[0].z() : cylinder->half_length;
+  return std::abs(facet.at(0.5, 0).z()) + reach(facet, width) > end && std::isfinite(cylinder->half_length);
 }
 
 /// The least value of a function without other minima on [0, 1], and where.
@@ -182,6 +185,11 @@ std::pair<double, double> least_between(const Function& value) {
   return at_a < at_b ? std::pair(at_a, a) : std::pair(at_b, b);
 }
 
+/// Is a place beside the part of a cylinder that the facet meets by pairs?
+bool in_core(const Core& core, const Facet& facet, const Vec3& at) {
+  return core.coarse[facet.segment] != 0 && std::abs(at.z()) < core.ends[0].z();
+}
+
 /// The deepest point of a facet that an edge may cut between the grid's points. Distance to a convex solid is convex on
 /// a flat facet, and rulings cover it in order: along each, and from one to the next, there is one minimum.
 void find_deepest(const Facet& facet, double width, double tolerance, Nearest& nearest, Workspace& work) {
@@ -191,9 +199,12 @@ void find_deepest(const Facet& facet, double width, double tolerance, Nearest& n
   };
   const double share = least_between([&](double f) { return across(f).first; }).second;
   const auto [distance, g] = across(share);
-  const double gap = distance - kept_by(work.solids);
+  const double gap = distance - kept_by(work);
+  const Vec3 at = facet.at(share, width * (g - 0.5));
   nearest.gap = std::min(nearest.gap, gap);
-  if (gap < -tolerance) add_touch(facet, share, width * (g - 0.5), width, work);
+  if (gap < -tolerance && !in_core(work.corners.cores[facet.solid], facet, at)) {
+    add_touch(facet, share, width * (g - 0.5), width, work);
+  }
 }
 
 /// A bound from below on the distance of a ruling: distance to a convex solid lies above its tangent plane.
@@ -207,7 +218,7 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
              Workspace& work) {
   const ContactProblem& solids = work.solids;
   const contact::Shape& shape = solids.solids[facet.solid].shape;
-  const double kept = kept_by(solids);
+  const double kept = kept_by(work);
   const std::size_t each = grid.across + 1;
   work.gaps.resize((grid.along + 1) * each);
   work.ruling_gaps.resize(grid.along + 1);
@@ -234,27 +245,26 @@ void look_at(const Grid& grid, const Facet& facet, const Facet& before, double t
   nearest.gap = std::min(nearest.gap, least);
   const double cell =
       grid.width / static_cast<double>(grid.across) + (facet.r1 - facet.r0).norm() / static_cast<double>(grid.along);
-  if (least < cell && has_edges(shape, facet, grid.width)) find_deepest(facet, grid.width, tolerance, nearest, work);
+  if (least < cell && has_edges(shape, work.corners.cores[facet.solid], facet, grid.width))
+    find_deepest(facet, grid.width, tolerance, nearest, work);
 }
 
-/// Cells of the grid such that what bends the most bulges between points by a quarter of contact.distance. Finer than
-/// the barrier's, where every point costs: here few become rows, and fewer do if they are close enough to tell the
-/// deepest.
-void refine(const Ribbon& ribbon, ContactProblem& problem) {
+/// Cells of the grid such that what bends the most bulges between points by half of what is kept. Finer than the
+/// barrier's, where every point costs: here few become rows, and fewer do if they are close enough to tell the deepest.
+/// Facets for which it is too coarse have pairs instead. Returns what points keep [m].
+double refine(const Ribbon& ribbon, ContactProblem& problem) {
   double radius = std::numeric_limits<double>::infinity();
   for (const ContactProblem::Solid& solid : problem.solids) {
     const auto* cylinder = std::get_if<contact::Cylinder>(&solid.shape);
     radius = std::min(radius, cylinder != nullptr ? cylinder->radius : inner_radius(solid.shape));
   }
-  const double cell = std::sqrt(0.5 * radius * problem.distance);
+  const double cell = std::sqrt(2 * radius * kKeeps * problem.distance);
   const auto cells = [&](double size) {
     return static_cast<int>(std::clamp(std::ceil(size / cell), 1.0, static_cast<double>(kMostCells)));
   };
-  const double longest = *std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end());
-  problem.along = cells(longest);
+  problem.along = cells(*std::max_element(ribbon.rest_length.begin(), ribbon.rest_length.end()));
   problem.across = cells(ribbon.width);
-  const double side = std::max(ribbon.width / problem.across, longest / problem.along);
-  problem.margin = std::min(0.5 * side * side / radius, problem.distance);
+  return std::isinf(radius) ? 0 : kKeeps * problem.distance;
 }
 
 }  // namespace
@@ -263,7 +273,7 @@ void set_solids(const Ribbon& ribbon, const constraint::Surroundings& surroundin
                 Workspace& work) {
   const auto place = [&](double t, ContactProblem& problem) {
     place_solids(ribbon, surroundings, t, problem);
-    refine(ribbon, problem);
+    work.point_margin = refine(ribbon, problem);
     problem.solids.clear();  // boxes too, which are triangles there
     for (const constraint::Obstacle& obstacle : surroundings.obstacles) {
       problem.solids.push_back({obstacle.shape, constraint::pose_at(obstacle.motion, t), obstacle.friction});
@@ -282,24 +292,27 @@ void find_points(const Ribbon& ribbon, const geometry::State& shape, double tole
     if (std::holds_alternative<contact::Polyhedron>(solid)) continue;  // met by pairs
     const double size = inner_radius(solid);
     for (std::size_t s = 0; s < shape.q.size(); ++s) {
+      const bool coarse = work.corners.cores[i].coarse[s] != 0;
+      if (coarse && !std::holds_alternative<contact::Cylinder>(solid)) continue;  // met by pairs, too
       Facet facet = facet_of(shape, solids.solids[i].pose, i, s);
       const Facet before = facet_of(work.before, work.solids_before.solids[i].pose, i, s);
       const double way = way_of(before, facet, ribbon.width);
       facet.fast = way > kFast * size;
       const double clear = contact::distance(solid, facet.at(0.5, 0)).value - reach(facet, ribbon.width);
-      if (clear - kept_by(solids) > (facet.fast ? way : 0)) {
-        nearest.gap = std::min(nearest.gap, clear - kept_by(solids));  // a bound from below
+      if (clear - kept_by(work) > (facet.fast ? way : 0)) {
+        nearest.gap = std::min(nearest.gap, clear - kept_by(work));  // a bound from below
         continue;
       }
+      if (coarse && !has_edges(solid, work.corners.cores[i], facet, ribbon.width)) continue;
       look_at(grid, facet, before, tolerance, nearest, work);
     }
   }
-  nearest.distance = nearest.gap + solids.margin;
+  nearest.distance = nearest.gap + work.point_margin;
 }
 
 void refresh_point(const geometry::State& shape, const Workspace& work, Touch& touch) {
   const ContactProblem::Solid& solid = work.solids.solids[touch.solid];
-  const double kept = kept_by(work.solids);
+  const double kept = kept_by(work);
   const Vec3 at = into(solid.pose, place_of(shape, touch.arm[0].place));
   Distance d;
   if (touch.fast) {

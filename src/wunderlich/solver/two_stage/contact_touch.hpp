@@ -13,6 +13,7 @@
 namespace wunderlich::solver::two_stage {
 
 inline constexpr std::size_t kItself = std::numeric_limits<std::size_t>::max();  ///< in place of a solid: the strip
+inline constexpr double kKeeps = 0.25;  ///< of contact.distance: what stays between, beside the thickness
 
 /// A point of the strip as part of a touch.
 struct Arm {
@@ -47,7 +48,8 @@ struct Touch {
 
 /// What a look at all that may touch found.
 struct Nearest {
-  double gap = std::numeric_limits<double>::infinity();       ///< smallest, beyond thickness and margin [m]
+  double gap = std::numeric_limits<double>::infinity();       ///< smallest that is sure, beyond the thickness: what may
+                                                              ///< bulge between points is taken off [m]
   double distance = std::numeric_limits<double>::infinity();  ///< smallest, beyond the thickness [m]
   bool passes = false;                                        ///< parts go through each other on the way
 };

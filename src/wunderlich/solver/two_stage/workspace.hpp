@@ -64,6 +64,7 @@ struct Workspace {
 
   // stage contact
   ContactProblem solids_before, solids;  ///< at both ends of the substep
+  double point_margin = 0;               ///< that points keep beyond the thickness [m]
   Corners corners;
   std::vector<Touch> touches;
   std::vector<double> gaps, ruling_gaps, line_gaps;  ///< of the points of a facet, least by ruling, of one ruling
