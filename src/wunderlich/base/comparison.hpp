@@ -29,6 +29,8 @@ struct ModelResult {
   int constraints = 0;             ///< scalar equations that hold them together, supports left out
   Energies energy;
   IsometryErrors isometry;
+  double length_error = 0;  ///< largest relative error of a length that is a constraint, at the end
+  double missed_steps = 0;  ///< share of the steps whose constraints were not met to the tolerance
   long steps = 0;
   double step_us = 0;        ///< median of a step
   double iterations = 0;     ///< mean of a step

@@ -162,15 +162,19 @@ class Pool {
   /// Until a worker answers, or one is late.
   void wait() {
     std::vector<pollfd> files;
+    std::vector<std::size_t> whose;
     Clock::time_point first = Clock::now() + std::chrono::milliseconds(200);
-    for (const Worker& worker : workers_) {
-      files.push_back({worker.busy() ? worker.channel : -1, POLLIN, 0});
-      if (worker.busy()) first = std::min(first, worker.deadline);
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      if (!workers_[i].busy()) continue;
+      files.push_back({workers_[i].channel, POLLIN, 0});
+      whose.push_back(i);
+      first = std::min(first, workers_[i].deadline);
     }
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(first - Clock::now()).count();
-    ::poll(files.data(), files.size(), static_cast<int>(std::max<long>(0, left + 1)));
+    const int answers = ::poll(files.data(), files.size(), static_cast<int>(std::max<long>(0, left + 1)));
+    if (answers < 0 && errno != EINTR) throw std::runtime_error(fmt::format("processes: {}", std::strerror(errno)));
     ready_.assign(workers_.size(), false);
-    for (std::size_t i = 0; i < files.size(); ++i) ready_[i] = files[i].fd >= 0 && files[i].revents != 0;
+    for (std::size_t k = 0; k < files.size(); ++k) ready_[whose[k]] = answers > 0 && files[k].revents != 0;
   }
 
   bool take(Worker& worker, bool ready, Done& result) {
