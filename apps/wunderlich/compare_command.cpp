@@ -22,8 +22,8 @@ void print_table(const Comparison& comparison) {
   for (const ModelResult& m : comparison.models) {
     std::cout << fmt::format("{:<20} {:<18} {:>9} {:>11}", m.model, m.resolution, m.unknowns, m.constraints);
     if (m.steps > 0) {
-      std::cout << fmt::format(" {:>12.6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>11.4g}", m.energy.normalized, m.isometry.area,
-                               m.isometry.diagonal, m.isometry.rim, m.step_us);
+      std::cout << fmt::format(" {:>12.6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>11.4g}", m.energy.normalized,
+                               m.isometry.area, m.isometry.diagonal, m.isometry.rim, m.step_us);
     }
     std::cout << "\n";
   }

@@ -79,6 +79,7 @@ int jobs_of(const SweepArguments& arguments) {
 sweep::Keep keeper(const sweep::Sweep& sweep, const fs::path& folder) {
   return [formats = sweep.keep, folder](const scene::Scene& scene, scene::RunResult& result, const std::string& key) {
     std::vector<io::Format> list;
+    list.reserve(formats.size());
     for (const std::string& word : formats) list.push_back(io::parse_format(word));
     const StoredRun run{scene, std::move(result.progress), result.outcome};
     io::write_run_folder(folder / "runs" / key, output_of(run, result.summary), list);

@@ -67,7 +67,8 @@ Json number_json(double value) {
 Json model_json(const ModelResult& model) {
   Json out = {{"model", model.model}, {"method", model.method}, {"resolution", model.resolution}};
   for (const Column& column : columns) {
-    out[column.name] = has_figures(model) ? number_json(finite(column.value(model), model, column.name)) : Json(nullptr);
+    out[column.name] =
+        has_figures(model) ? number_json(finite(column.value(model), model, column.name)) : Json(nullptr);
   }
   out["converged"] = model.converged;
   if (!model.failure.empty()) out["failure"] = model.failure;
@@ -106,6 +107,7 @@ Json shapes_json(const ModelResult& model, const std::vector<Body>& bodies) {
   out["bodies"] = Json::array();
   for (const Body& body : bodies) {
     std::vector<Pose> poses;
+    poses.reserve(frames.size());
     for (const Frame* frame : frames)
       poses.push_back(body.poses[static_cast<std::size_t>(frame - model.frames.data())]);
     out["bodies"].push_back(body_json(body.mesh, poses));

@@ -28,7 +28,8 @@ void count_ribbon(const Scene& scene, ModelResult& result) {
   result.unknowns = 2 * n + 6;  // curvature and ruling of each hinge, and the first pose
 }
 
-/// The clock of a path runs on while supports are approached and while it settles; other models know the load parameter.
+/// The clock of a path runs on while supports are approached and while it settles; other models know the load
+/// parameter.
 double load_at(const Scene& scene, double clock, double last) {
   const double duration = scene.solver.duration;
   if (scene.ribbon.closure == geometry::Closure::loop) return duration * clock / last;

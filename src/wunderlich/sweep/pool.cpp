@@ -14,8 +14,9 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
-#include <stdexcept>
 #include <vector>
+
+#include "wunderlich/base/error.hpp"
 
 namespace wunderlich::sweep {
 
@@ -74,9 +75,9 @@ constexpr std::size_t kGiven = 2;
 Worker start_worker(const std::vector<Worker>& others, const std::function<std::string(std::size_t)>& work) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0)
-    throw std::runtime_error("no process can be started: socketpair");
+    throw InputError(fmt::format("processes cannot be started: {}", std::strerror(errno)));
   const pid_t parent = ::getpid(), process = ::fork();
-  if (process < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
+  if (process < 0) throw InputError(fmt::format("processes cannot be started: {}", std::strerror(errno)));
   if (process == 0) {
     ::close(ends[0]);
     for (const Worker& other : others) {
@@ -172,7 +173,8 @@ class Pool {
     }
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(first - Clock::now()).count();
     const int answers = ::poll(files.data(), files.size(), static_cast<int>(std::max<long>(0, left + 1)));
-    if (answers < 0 && errno != EINTR) throw std::runtime_error(fmt::format("processes: {}", std::strerror(errno)));
+    if (answers < 0 && errno != EINTR)
+      throw InputError(fmt::format("processes cannot be waited for: {}; fewer --jobs may help", std::strerror(errno)));
     ready_.assign(workers_.size(), false);
     for (std::size_t k = 0; k < files.size(); ++k) ready_[whose[k]] = answers > 0 && files[k].revents != 0;
   }
