@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kTried = 3;  // runs from which the time of all is guessed
+constexpr std::size_t kTried = 3;  // runs, or one a process, from which the time of all is guessed
 
 std::string duration(double seconds) {
   if (seconds < 0) return "unknown";
@@ -134,10 +134,10 @@ int sweep_command(const SweepArguments& arguments) {
   if (!arguments.quiet) {
     std::cout << fmt::format("{}: {} runs, {} of them done already\n", sweep.name, now.runs, now.finished)
               << std::flush;
-    if (now.runs - now.finished > 20 * kTried) {
-      go(kTried);
-      std::cout << fmt::format("about {} with {} processes, as {} runs took\n", duration(now.left()), options.jobs,
-                               kTried)
+    const std::size_t tried = std::max(kTried, static_cast<std::size_t>(options.jobs));
+    if (now.runs - now.finished > tried) {
+      go(tried);
+      std::cout << fmt::format("about {} with {} processes, as {} runs took\n", duration(now.left()), options.jobs, tried)
                 << std::flush;
     }
   }

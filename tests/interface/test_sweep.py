@@ -1,9 +1,11 @@
 """wunderlich sweep: many runs, resumable, with one table at the end."""
 
 import csv
+import html
 import json
 import os
 import random
+import shlex
 import signal
 import struct
 import subprocess
@@ -77,7 +79,10 @@ class Sweep(ProgramTest):
         self.assertEqual(float(one["energy"]), summary["energy"]["normalized"])
         self.assertEqual(float(one["clamp_force"]), summary["ends"][0]["force"][2])
         detail = (self.folder / "there/runs.html").read_text().split(f'<h2 id="{one["key"]}">')[1].split("</pre>")[0]
-        self.assertIn(f"wunderlich run strip --set 'ribbon.width={one['width']}' --set 'gravity={one['weight']}'", detail)
+        command = next(line for line in detail.splitlines() if "wunderlich run" in line)
+        again = shlex.split(html.unescape(command[command.index("wunderlich"):]))[1:]
+        subprocess.run([PROGRAM, *again, "--out", "again", "--formats", "none", "--quiet"], cwd=self.folder / "there", check=True)
+        self.assertEqual(json.loads((self.folder / "there/again/summary.json").read_text())["energy"], summary["energy"])
         self.assertEqual(json.loads(detail.splitlines()[-1])["summary"]["energy"], summary["energy"])
         page = (self.folder / "there/report.html").read_text()
         self.assertIn(one["key"], page)
@@ -162,8 +167,41 @@ class Sweep(ProgramTest):
         self.assertIn("the same command goes on", error)
         self.expect(0, "sweep", "status", "there")
 
+    def test_shards_may_start_at_once_and_be_killed_while_they_do(self):
+        self.sweep(20)
+        for _ in range(10):
+            process = subprocess.Popen([PROGRAM, "sweep", "sweep.yaml", "--out", "parts", "--quiet"], cwd=self.folder)
+            time.sleep(random.uniform(0.0, 0.01))
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        for name in ("parts", "fresh"):
+            shards = [subprocess.Popen([PROGRAM, "sweep", "sweep.yaml", "--out", name, "--shard", f"{i}/4", "--quiet"],
+                                       cwd=self.folder) for i in range(1, 5)]
+            self.assertEqual([shard.wait() for shard in shards], [0, 0, 0, 0], name)
+            self.expect(0, "sweep", "collect", name)
+            self.assertEqual({row["status"] for row in self.table(name)}, {"done"})
+
+    def test_nothing_of_the_users_is_overwritten(self):
+        self.sweep(2)
+        self.expect_refused("sweep", "sweep.yaml", "--out", ".", says="no folder of a sweep")
+
+    def test_equal_values_are_run_once(self):
+        self.write("sweep.yaml", SWEEP.replace("linear: {from: 0.05, to: 0.1, count: WIDTHS}", "values: [0.1, 0.1, 0.1]"))
+        self.expect(0, "sweep", "sweep.yaml", "--out", "there", "--quiet")
+        self.assertEqual(len((self.folder / "there/results/all.log").read_text().splitlines()), 4)
+        self.assertEqual(len(self.table()), 12)
+        self.assertEqual({row["status"] for row in self.table()}, {"done"})
+
+    def test_what_keep_asks_for_is_there_and_linked(self):
+        self.sweep(1)
+        self.expect(0, "sweep", "sweep.yaml", "--out", "there", "--quiet")
+        self.sweep(1, "keep: [html]\n")
+        self.expect(0, "sweep", "sweep.yaml", "--out", "there", "--quiet")
+        for row in self.table():
+            self.assertTrue((self.folder / f"there/runs/{row['key']}/report.html").exists())
+
     def test_the_slurm_script_is_plain(self):
-        self.sweep()
+        self.sweep(40)
         result = self.call("sweep", "sweep.yaml", "--out", "there", "--engine", "slurm", "--shards", "4", "--walltime",
                            "1:00:00", "--partition", "short", "--jobs", "2", "--sbatch=--mem=1G")
         script = (self.folder / "there/slurm/job.sh").read_text()

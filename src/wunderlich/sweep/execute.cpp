@@ -65,14 +65,16 @@ Record execute(const Sweep& sweep, std::size_t run, const Keep& keep) {
   const Clock::time_point start = Clock::now();
   Record record;
   record.key = key_of(sweep, run);
+  bool started = false;
   try {
     const scene::Scene scene =
         scene::read_scene_text(sweep.scene_text, sweep.scene_name + ".yaml", assignments_of(sweep, run));
     scene::check_start(scene);
+    started = true;
     scene::RunResult result = scene::run(scene, {});
     fill(sweep, scene, result, keep, record);
   } catch (const InputError& error) {
-    record.status = Status::refused;
+    record.status = started ? Status::failed : Status::refused;  // after that only the disk can say no
     record.reason = error.what();
   } catch (const std::exception& error) {
     record.status = Status::failed;

@@ -1,5 +1,6 @@
 #include "wunderlich/sweep/figures.hpp"
 
+#include <charconv>
 #include <limits>
 
 #include "wunderlich/io/summary_json.hpp"
@@ -20,7 +21,8 @@ const Json* at_path(const Json& body, const std::string& path) {
     const std::string part = path.substr(begin, end - begin);
     begin = end + 1;
     if (here->is_array() && !part.empty() && part.find_first_not_of("0123456789") == std::string::npos) {
-      const std::size_t index = std::stoul(part);
+      std::size_t index = here->size();
+      std::from_chars(part.data(), part.data() + part.size(), index);
       here = index < here->size() ? &(*here)[index] : nullptr;
     } else {
       here = here->is_object() && here->contains(part) ? &(*here)[part] : nullptr;
@@ -63,7 +65,8 @@ double figure(const Json& body, const std::string& path) {
 
 bool is_figure(const std::string& path) {
   // Lists may be longer than in the example, and of numbers.
-  return figure(example(), path) == figure(example(), path) || path.compare(0, 12, "kappa_zeros.") == 0;
+  return figure(example(), path) == figure(example(), path) ||
+         (path.compare(0, 12, "kappa_zeros.") == 0 && path.find_first_not_of("0123456789", 12) == std::string::npos);
 }
 
 std::vector<std::string> figure_names() {

@@ -53,10 +53,17 @@ bool write_all(int file, const void* from, std::size_t size) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);  // it was gone before that took effect
   ::signal(SIGINT, SIG_IGN);              // Ctrl-C reaches the whole group; the parent decides
-  for (std::uint64_t item = 0; read_all(channel, &item, sizeof item);) {
-    const std::string result = work(static_cast<std::size_t>(item));
-    const std::uint64_t size = result.size();
-    if (!write_all(channel, &size, sizeof size) || !write_all(channel, result.data(), result.size())) break;
+  // Locks and channels of others are not this process's to hold.
+  ::close_range(3, static_cast<unsigned>(channel) - 1, 0);
+  ::close_range(static_cast<unsigned>(channel) + 1, ~0u, 0);
+  try {
+    for (std::uint64_t item = 0; read_all(channel, &item, sizeof item);) {
+      const std::string result = work(static_cast<std::size_t>(item));
+      const std::uint64_t size = result.size();
+      if (!write_all(channel, &size, sizeof size) || !write_all(channel, result.data(), result.size())) break;
+    }
+  } catch (...) {
+    ::_exit(1);  // never back into what was the parent's
   }
   ::_exit(0);  // no destructors: what they would flush belongs to the parent
 }
@@ -70,19 +77,15 @@ struct Worker {
   bool busy() const { return !items.empty(); }
 };
 
-constexpr std::size_t kGiven = 2;
+constexpr double kShort = 0.1;  // s; of longer runs none waits behind another
 
-Worker start_worker(const std::vector<Worker>& others, const std::function<std::string(std::size_t)>& work) {
+Worker start_worker(const std::function<std::string(std::size_t)>& work) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0)
     throw InputError(fmt::format("processes cannot be started: {}", std::strerror(errno)));
   const pid_t parent = ::getpid(), process = ::fork();
   if (process < 0) throw InputError(fmt::format("processes cannot be started: {}", std::strerror(errno)));
   if (process == 0) {
-    ::close(ends[0]);
-    for (const Worker& other : others) {
-      if (other.channel >= 0) ::close(other.channel);
-    }
     serve(ends[1], parent, work);
   }
   ::close(ends[1]);
@@ -115,9 +118,7 @@ class Pool {
 
   void go(const std::function<long()>& next, const std::function<void(const Done&)>& done,
           const std::function<bool()>& goes_on) {
-    for (std::size_t k = 0; k < kGiven; ++k) {
-      for (Worker& worker : workers_) give(worker, next);
-    }
+    for (Worker& worker : workers_) give(worker, next);
     while (busy() && goes_on()) {
       wait();
       for (std::size_t i = 0; i < workers_.size(); ++i) {
@@ -143,15 +144,22 @@ class Pool {
   }
 
   void give(Worker& worker, const std::function<long()>& next) {
-    while (worker.items.size() < kGiven) {
+    while (worker.items.size() < given()) {
       const long item = next_item(next);
       if (item < 0) return;
-      if (worker.process < 0) worker = start_worker(workers_, work_);
+      if (worker.process < 0) worker = start_worker(work_);
       if (!worker.busy()) start_clock(worker);
       worker.items.push_back(static_cast<std::size_t>(item));
       const auto number = static_cast<std::uint64_t>(item);
       write_all(worker.channel, &number, sizeof number);  // if it is gone, reading will show it
     }
+  }
+
+  /// Two, while runs are short: the second hides the time that the answer takes.
+  std::size_t given() const {
+    const double busy =
+        std::chrono::duration<double>(Clock::now() - start_).count() * static_cast<double>(workers_.size());
+    return taken_ > 0 && busy < kShort * static_cast<double>(taken_) ? 2 : 1;
   }
 
   void start_clock(Worker& worker) const {
@@ -190,6 +198,7 @@ class Pool {
     } else if (!read_result(worker.channel, result.result)) {
       result.failure = end(worker, true);
     } else {
+      ++taken_;
       start_clock(worker);
       return true;
     }
@@ -209,6 +218,8 @@ class Pool {
   const std::function<std::string(std::size_t)>& work_;
   std::vector<Worker> workers_;
   std::vector<bool> ready_;
+  Clock::time_point start_ = Clock::now();
+  std::size_t taken_ = 0;          ///< results so far
   std::vector<std::size_t> left_;  ///< given to workers that died before they came to it
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/file.hpp"
+#include "wunderlich/sweep/sweep.hpp"
 
 namespace wunderlich::sweep {
 
@@ -19,20 +21,28 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kRunsOfAShard = 500;
+constexpr std::size_t kRunsOfAShard = 500, kLeastRuns = 25;
 constexpr const char* kJobFile = "slurm/job";
-
-/// For a POSIX shell.
-std::string shell_word(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
 
 struct Answer {
   int code = -1;
   std::string text;  ///< standard output and error
 };
+
+/// What sbatch takes for a name without quotes.
+std::string plain(std::string text) {
+  for (char& c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '-';
+  }
+  return text;
+}
+
+/// sbatch fills in what follows a percent sign.
+std::string doubled(const std::string& path) {
+  std::string out;
+  for (const char c : path) out += c == '%' ? "%%" : std::string(1, c);
+  return out;
+}
 
 Answer call(const std::string& command) {
   Answer answer;
@@ -48,9 +58,15 @@ Answer call(const std::string& command) {
 
 }  // namespace
 
+std::string shell_word(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
+}
+
 std::size_t shard_count(const SlurmOptions& options, std::size_t runs) {
   const std::size_t wanted = options.shards > 0 ? options.shards : (runs + kRunsOfAShard - 1) / kRunsOfAShard;
-  return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, runs));
+  return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, runs / kLeastRuns));
 }
 
 std::string job_script(const SlurmOptions& options, std::size_t runs, const std::string& program,
@@ -58,14 +74,14 @@ std::string job_script(const SlurmOptions& options, std::size_t runs, const std:
   const std::size_t shards = shard_count(options, runs);
   std::string out = "#!/bin/sh\n# One task of the array is one shard of the sweep; it goes on where it was cut off.\n";
   out += fmt::format("#SBATCH --job-name={}\n#SBATCH --array=1-{}\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n",
-                     "wunderlich-" + name, shards, options.jobs);
-  out += fmt::format("#SBATCH --output={}/slurm/%A_%a.out\n", folder.string());
+                     plain("wunderlich-" + name), shards, options.jobs);
+  out += fmt::format("#SBATCH --output=\"{}/slurm/%A_%a.out\"\n", doubled(folder.string()));
   out += options.requeue ? "#SBATCH --requeue\n" : "#SBATCH --no-requeue\n";
   if (!options.walltime.empty()) out += fmt::format("#SBATCH --time={}\n", options.walltime);
   if (!options.partition.empty()) out += fmt::format("#SBATCH --partition={}\n", options.partition);
   for (const std::string& more : options.more) out += fmt::format("#SBATCH {}\n", more);
   out += fmt::format("exec {} sweep {} --out {} --shard \"$SLURM_ARRAY_TASK_ID/{}\" --jobs {} --quiet\n",
-                     shell_word(program), shell_word((folder / "sweep.yaml").string()), shell_word(folder.string()),
+                     shell_word(program), shell_word((folder / kSweepFile).string()), shell_word(folder.string()),
                      shards, options.jobs);
   return out;
 }

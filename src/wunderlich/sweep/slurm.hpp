@@ -18,6 +18,10 @@ struct SlurmOptions {
   std::vector<std::string> more;  ///< further arguments of sbatch, `--mem=2G`
 };
 
+/// A text as one word of a POSIX shell.
+std::string shell_word(const std::string& text);
+
+/// Never so many that a shard has fewer than 25 runs.
 std::size_t shard_count(const SlurmOptions& options, std::size_t runs);
 
 /// The job script: what one task of the array does, and how the array is asked for.

@@ -94,9 +94,12 @@ std::vector<std::string> some_of(const Node& list, const std::vector<std::string
 std::string key_part(const std::string& assignment) { return assignment.substr(0, assignment.find('=')); }
 
 /// No key is set by two axes, no column stands twice, and the scene takes every value, each tried alone.
-void check_axes(const std::vector<Node>& entries, const Sweep& sweep) {
-  std::set<std::string> columns, keys;
-  for (const Collected& result : sweep.collected) columns.insert(result.name);
+void check_axes(const std::vector<Node>& entries, const Node& collect, const Sweep& sweep) {
+  std::set<std::string> columns{"run", "key", "status", "reason", "run_seconds"}, keys;
+  for (const Collected& result : sweep.collected) {
+    if (!columns.insert(result.name).second)
+      refuse(collect, fmt::format("`{}` is the name of another column", result.name));
+  }
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
     for (const std::string& name : sweep.axes[a].columns) {
       if (!columns.insert(name).second)
@@ -160,6 +163,9 @@ Sweep read_sweep_text(const std::string& text, const std::string& source) {
   require_keys(root, {"name", "title", "scene", "set", "axes", "collect", "fields", "keep", "timeout", "scene_name"});
   Sweep sweep;
   sweep.name = child(root, "name") ? word(child(root, "name")) : std::filesystem::path(source).stem().string();
+  if (sweep.name.find('/') != std::string::npos || sweep.name.front() == '.') {
+    refuse(child(root, "name"), "must be a name for a folder, without `/` and not beginning with a dot");
+  }
   sweep.title = child(root, "title") ? word(child(root, "title")) : sweep.name;
   sweep.scene_name = child(root, "scene_name") ? word(child(root, "scene_name")) : sweep.name;
   read_base(child(root, "scene"), std::filesystem::path(source).parent_path().string(), sweep);
@@ -170,7 +176,7 @@ Sweep read_sweep_text(const std::string& text, const std::string& source) {
   if (const Node timeout = child(root, "timeout")) sweep.timeout = number(timeout, 1e-3, 1e9);
   const std::vector<Node> entries = elements(child(root, "axes"), kMostAxes);
   for (const Node& entry : entries) sweep.axes.push_back(read_axis(entry));
-  check_axes(entries, sweep);
+  check_axes(entries, child(root, "collect"), sweep);
   sweep.text = standing_alone(document, sweep);
   return sweep;
 }
@@ -204,6 +210,7 @@ std::string key_of(const Sweep& sweep, std::size_t run) {
   std::string what = std::string(version) + "\n" + sweep.scene_text;
   for (const std::string& assignment : assignments_of(sweep, run)) what += "\n" + assignment;
   for (const std::string& field : sweep.fields) what += "\nfield " + field;
+  for (const std::string& format : sweep.keep) what += "\nkeep " + format;
   return fmt::format("{:016x}", io::checksum(what));
 }
 

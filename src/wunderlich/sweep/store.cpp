@@ -22,6 +22,16 @@ namespace {
   throw InputError(fmt::format("{}: {}", path.string(), problem));
 }
 
+/// A process that was just killed holds its locks a moment longer.
+bool lock(int file) {
+  for (int k = 0; k < 20; ++k) {
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+    if (errno != EWOULDBLOCK) return false;
+    ::usleep(50'000);
+  }
+  return false;
+}
+
 /// Calls `visit(offset, line)` for each whole line; returns where the last one that is sound ends.
 template <class Visit>
 std::uint64_t each_line(const fs::path& path, Visit visit) {
@@ -46,9 +56,11 @@ Writer::Writer(const fs::path& folder, const std::string& name) : path_(folder /
   if (error) fail(path_, "cannot be created: " + error.message());
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (file_ < 0) fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
-  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+  if (!lock(file_)) {
+    const int reason = errno;
     ::close(file_);
-    fail(path_, "another process is at work on this part of the sweep");
+    fail(path_, reason == EWOULDBLOCK ? "another process is at work on this part of the sweep"
+                                      : fmt::format("cannot be locked: {}", std::strerror(reason)));
   }
   // Every line before a damaged one was written before it.
   const std::uint64_t sound =
@@ -67,6 +79,18 @@ void Writer::add(const Record& record) {
   const int reason = written < 0 ? errno : ENOSPC;
   const bool cut = ::ftruncate(file_, before) == 0;
   fail(path_, fmt::format("cannot be written: {}{}", std::strerror(reason), cut ? "" : "; its last line is torn"));
+}
+
+bool is_busy(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "results", error)) {
+    const int file = ::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) continue;
+    const bool busy = ::flock(file, LOCK_SH | LOCK_NB) != 0;
+    ::close(file);
+    if (busy) return true;
+  }
+  return false;
 }
 
 Store::Store(const fs::path& folder) {
@@ -94,7 +118,14 @@ const Found* Store::find(const std::string& key) const {
 Record Store::read(const Found& found) {
   open_.resize(logs_.size());
   std::ifstream& in = open_[found.log];
-  if (!in.is_open()) in.open(logs_[found.log], std::ios::binary);
+  if (!in.is_open()) {
+    constexpr std::size_t kMostOpen = 100;
+    if (++opened_ % kMostOpen == 0) {
+      for (std::ifstream& other : open_) other.close();
+    }
+    in.open(logs_[found.log], std::ios::binary);
+    if (!in) fail(logs_[found.log], "cannot be read");
+  }
   in.clear();
   in.seekg(static_cast<std::streamoff>(found.offset));
   std::string line;

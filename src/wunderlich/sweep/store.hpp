@@ -29,6 +29,9 @@ class Writer {
   int file_ = -1;
 };
 
+/// Is a writer at work in the folder?
+bool is_busy(const std::filesystem::path& folder);
+
 /// Where a record stands.
 struct Found {
   std::uint32_t log = 0;
@@ -47,6 +50,7 @@ class Store {
  private:
   std::vector<std::filesystem::path> logs_;
   std::vector<std::ifstream> open_;  ///< the logs, as far as they have been read from
+  std::size_t opened_ = 0;           ///< how often one was
   std::unordered_map<std::string, Found> places_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <unordered_set>
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/file.hpp"
@@ -37,11 +38,17 @@ bool is_settled(const Found* found, bool retry) {
 /// What is left of a shard, by number.
 std::vector<std::size_t> open_runs(const Sweep& sweep, const Store& store, const Options& options, Standing& standing) {
   std::vector<std::size_t> open;
+  std::unordered_set<std::string> seen;  // equal values make equal runs, which are done once
   for (std::size_t run = options.shard.index; run < run_count(sweep); run += options.shard.count) {
     ++standing.runs;
-    const Found* found = store.find(key_of(sweep, run));
+    const std::string key = key_of(sweep, run);
+    const Found* found = store.find(key);
     if (!is_settled(found, options.retry)) {
-      open.push_back(run);
+      if (seen.insert(key).second) {
+        open.push_back(run);
+      } else {
+        ++standing.finished;
+      }
       continue;
     }
     ++standing.finished;
@@ -81,19 +88,36 @@ bool is_sweep_folder(const fs::path& folder) {
   return fs::is_regular_file(folder / kSweepFile, error);
 }
 
+namespace {
+
+/// Nothing but what begins with a dot: our own drafts, of a process that was killed or is under way.
+bool is_unused(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename().string().front() != '.') return false;
+  }
+  return !error;
+}
+
+}  // namespace
+
 void prepare_folder(const fs::path& folder, const Sweep& sweep) {
   std::error_code error;
-  if (is_sweep_folder(folder)) {
-    if (io::read_file(folder / kSweepFile) == sweep.text) return;
-    io::write_file(folder / kSweepFile,
-                   sweep.text);  // another sweep may share runs with it: they are known by what they are
-    return;
-  }
-  if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error))) {
+  if (fs::exists(folder, error) && !is_sweep_folder(folder) &&
+      !(fs::is_directory(folder, error) && is_unused(folder)) &&
+      !is_sweep_folder(folder)) {  // asked again: another process may just have made it one
     throw InputError(fmt::format("{}: exists and is no folder of a sweep; choose another --out", folder.string()));
   }
   fs::create_directories(folder, error);
   if (error) throw InputError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  if (is_sweep_folder(folder)) {
+    if (io::read_file(folder / kSweepFile) == sweep.text) return;
+    if (is_busy(folder)) {
+      throw InputError(
+          fmt::format("{}: a process is at work there on another sweep; choose another --out", folder.string()));
+    }
+  }
+  io::write_file(folder / kSceneFile, sweep.scene_text);
   io::write_file(folder / kSweepFile, sweep.text);
 }
 

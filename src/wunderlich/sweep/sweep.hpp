@@ -7,7 +7,9 @@
 
 namespace wunderlich::sweep {
 
-inline constexpr const char* kSweepFile = "sweep.yaml";
+/// The sweep with its scene inside, and the scene alone. Names that nobody gives their own files.
+inline constexpr const char* kSweepFile = "resolved-sweep.yaml";
+inline constexpr const char* kSceneFile = "resolved-scene.yaml";
 
 /// Runs i with i mod count = index; (0, 1) is all.
 struct Shard {
@@ -35,8 +37,8 @@ struct Standing {
 /// Called after every run and a few times a second; returns false to stop.
 using Observer = std::function<bool(const Standing&)>;
 
-/// Prepares the folder: writes the sweep there, or compares it with what stands there. Throws InputError if the folder
-/// holds something else.
+/// Prepares the folder: writes the sweep there. Several processes may do so at once. Throws InputError if the folder
+/// holds something else, or another sweep on which a process is at work.
 void prepare_folder(const std::filesystem::path& folder, const Sweep& sweep);
 
 /// Whether it is a sweep's folder.

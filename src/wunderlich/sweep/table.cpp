@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -15,7 +16,9 @@
 #include "wunderlich/io/bytes.hpp"
 #include "wunderlich/io/file.hpp"
 #include "wunderlich/io/packed_mesh.hpp"
+#include "wunderlich/scene/read.hpp"
 #include "wunderlich/sweep/figures.hpp"
+#include "wunderlich/sweep/slurm.hpp"
 
 namespace wunderlich::sweep {
 
@@ -96,6 +99,12 @@ class Stream {
  public:
   explicit Stream(const fs::path& path)
       : path_(path), draft_(io::sibling(path, "partial")), out_(draft_, std::ios::binary) {}
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  ~Stream() {
+    std::error_code ignored;
+    fs::remove(draft_, ignored);
+  }
   Stream& operator<<(const std::string& text) {
     out_ << text;
     return *this;
@@ -145,7 +154,8 @@ Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : 
 
 /// What the page draws: axes with their values, and one array a result.
 struct PageData {
-  Json axes = Json::array(), status = Json::array(), keys = Json::array(), results = Json::object();
+  Json axes = Json::array(), status = Json::array(), keys = Json::array(), results = Json::object(),
+       reasons = Json::object();
 
   explicit PageData(const Sweep& sweep) {
     for (const Axis& axis : sweep.axes) {
@@ -164,15 +174,21 @@ struct PageData {
   void add(const Sweep& sweep, const Row& row) {
     keys.push_back(row.key);
     status.push_back(row.record ? status_name(row.record->status) : "open");
+    if (row.record && !row.record->reason.empty()) reasons[row.key] = row.record->reason;
     for (const Collected& result : sweep.collected) {
       results[result.name].push_back(number_or_null(figure(row.body, result.path)));
     }
   }
 };
 
+/// To be called in the sweep's folder, unless the scene is a shipped one.
 std::string command_of(const Sweep& sweep, std::size_t run) {
-  std::string out = "wunderlich run " + sweep.scene_name;
-  for (const std::string& assignment : assignments_of(sweep, run)) out += " --set '" + assignment + "'";
+  const auto& shipped = scene::shipped_scenes();
+  const bool known = std::any_of(shipped.begin(), shipped.end(), [&](const scene::ShippedScene& s) {
+    return s.name == sweep.scene_name && scene::read_scene(s.name).written == sweep.scene_text;
+  });
+  std::string out = "wunderlich run " + (known ? sweep.scene_name : std::string(kSceneFile));
+  for (const std::string& assignment : assignments_of(sweep, run)) out += " --set " + shell_word(assignment);
   return out;
 }
 
@@ -256,10 +272,18 @@ std::size_t collect(const fs::path& folder, const Sweep& sweep, std::string_view
   runs.finish();
   table.finish();
   write_fields(folder, sweep, store);
-  const Json all = {{"name", sweep.name},      {"title", sweep.title},       {"scene", sweep.scene_name},
-                    {"text", sweep.text},      {"program", program},         {"version", version},
-                    {"axes", data.axes},       {"status", data.status},      {"keys", data.keys},
-                    {"results", data.results}, {"kept", !sweep.keep.empty()}};
+  const Json all = {{"name", sweep.name},
+                    {"title", sweep.title},
+                    {"scene", sweep.scene_name},
+                    {"text", sweep.text},
+                    {"program", program},
+                    {"version", version},
+                    {"axes", data.axes},
+                    {"status", data.status},
+                    {"keys", data.keys},
+                    {"results", data.results},
+                    {"reasons", data.reasons},
+                    {"kept", std::find(sweep.keep.begin(), sweep.keep.end(), "html") != sweep.keep.end()}};
   io::write_file(folder / "report.html",
                  io::filled_page(page, all.dump(-1, ' ', false, Json::error_handler_t::replace)));
   return there;

@@ -5,11 +5,12 @@ import { heatMap, lineChart, type Mark } from './sweep_charts';
 interface Axis { columns: string[]; log: boolean; values: (number | null)[][]; words: string[][] }
 interface Sweep {
   name: string; title: string; scene: string; text: string; program: string; version: string; kept: boolean;
-  axes: Axis[]; status: string[]; keys: string[]; results: Record<string, (number | null)[]>;
+  axes: Axis[]; status: string[]; keys: string[]; results: Record<string, (number | null)[]>; reasons: Record<string, string>;
 }
 
-/** An axis whose values are numbers in order, one column: it can be drawn along. */
-const isPlain = (axis: Axis) => axis.columns.length === 1;
+/** One column of numbers in order: its points can be joined. */
+const isPlain = (axis: Axis) => axis.columns.length === 1 &&
+  axis.values.every(([v], i) => v !== null && (i === 0 || v >= (axis.values[i - 1][0] as number)));
 
 function strides(sweep: Sweep): number[] {
   const out = new Array<number>(sweep.axes.length);
@@ -26,7 +27,8 @@ const positions = (axis: Axis, column: number) => axis.values.map((value, i) => 
 
 function linkOf(sweep: Sweep, run: number): string | null {
   if (sweep.status[run] === 'open') return null;
-  return sweep.kept ? `runs/${sweep.keys[run]}/report.html` : `runs.html#${sweep.keys[run]}`;
+  const has = sweep.kept && (sweep.status[run] === 'done' || sweep.status[run] === 'not-converged');
+  return has ? `runs/${sweep.keys[run]}/report.html` : `runs.html#${sweep.keys[run]}`;
 }
 
 function markOf(sweep: Sweep, name: string, run: number): Mark {
@@ -140,7 +142,8 @@ function start() {
   const shown = trouble.slice(0, 200).map(({ status, run }) => {
     const link = linkOf(sweep, run);
     const what = link ? element('a', { href: link }, sweep.keys[run]) : sweep.keys[run];
-    return element('tr', {}, element('td', {}, String(run)), element('td', {}, what), element('td', {}, status));
+    return element('tr', {}, element('td', {}, String(run)), element('td', {}, what), element('td', {}, status),
+      element('td.reason', {}, sweep.reasons[sweep.keys[run]] ?? ''));
   });
   byId('trouble').append(trouble.length === 0 ? 'None.' : element('table', {}, element('tbody', {}, ...shown)));
 }
