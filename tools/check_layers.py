@@ -22,11 +22,13 @@ LAYERS = {
     "baseline": ["base", "math", "geometry", "contact", "constraint"],
     "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver", "baseline"],
     "io": ["base"],
+    "sweep": ["base", "geometry", "scene", "io"],
 }
 CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver", "baseline"]
 # layer -> prefixes of third-party headers it may include; what has no slash and no dot is the standard library
 THIRD_PARTY = {layer: ["Eigen/"] for layer in CORE}
 THIRD_PARTY["scene"] = ["Eigen/", "yaml-cpp/", "fmt/"]
+THIRD_PARTY["sweep"] = ["nlohmann/", "fmt/", "fcntl.h", "poll.h", "sys/", "unistd.h"]  # processes, locks
 THIRD_PARTY["io"] = ["Eigen/", "nlohmann/", "fmt/", "fcntl.h", "unistd.h"]  # POSIX: files that survive a power cut
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Slower checks than ./test has time for, some two hours on two cores: the paper's figures in full, clang-tidy on every
-# source, every check of the sanitizers, tests repeated in random order, whole scenes searched for penetration, half an hour of fuzzing, the core compiled
+# source, every check of the sanitizers, tests repeated in random order, whole scenes searched for penetration, a sweep of 10,000, one on Slurm, half an hour of fuzzing, the core compiled
 # against libc++, and coverage (build/coverage/report).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -32,6 +32,13 @@ WUNDERLICH_DROPS=1000 build/release/test_implicit --gtest_filter=Drops.Random
 
 echo "nightly: nothing goes through anything, in whole scenes"
 WUNDERLICH_WHOLE_SCENES=1 build/release/test_penetration
+
+echo "nightly: a sweep of 10,000 ribbons, killed 20 times"
+(cd tests/interface && WUNDERLICH_SWEEP_RUNS=10000 WUNDERLICH_SWEEP_KILLS=20 \
+  WUNDERLICH_PROGRAM=../../build/release/wunderlich python3 -B test_sweep.py)
+
+echo "nightly: a sweep on Slurm, an array of 8 shards on this machine"
+tools/slurm_test.sh
 
 echo "nightly: 30 minutes of fuzzing"
 tools/fuzz.sh 1800

@@ -36,6 +36,23 @@ struct ExportArguments {
 
 int export_command(const ExportArguments& arguments);
 
+struct SweepArguments {
+  std::string sweep;  ///< a sweep file
+  std::string out;    ///< empty: out/<sweep>
+  std::string engine = "local";
+  std::string shard;  ///< "3/8"; empty: all
+  int jobs = 0;       ///< processes; 0: one a core, on Slurm one a shard
+  bool retry = false;
+  std::size_t shards = 0;
+  std::string walltime, partition;
+  bool no_requeue = false;
+  std::vector<std::string> sbatch;
+  bool quiet = false;
+};
+
+int sweep_command(const SweepArguments& arguments);
+int sweep_status_command(const std::string& folder);
+int sweep_collect_command(const std::string& folder);
 struct CompareArguments {
   std::string scene;
   std::string models = "ribbon,rod,shell-conforming,shell-nonconforming";

@@ -20,9 +20,12 @@ void print_table(const Comparison& comparison) {
   std::cout << fmt::format("{:<20} {:<18} {:>9} {:>11} {:>12} {:>10} {:>10} {:>10} {:>11}\n", "model", "resolution",
                            "unknowns", "constraints", "V l/(D w)", "area", "diagonal", "rim", "us a step");
   for (const ModelResult& m : comparison.models) {
-    std::cout << fmt::format("{:<20} {:<18} {:>9} {:>11} {:>12.6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>11.4g}\n", m.model,
-                             m.resolution, m.unknowns, m.constraints, m.energy.normalized, m.isometry.area,
-                             m.isometry.diagonal, m.isometry.rim, m.step_us);
+    std::cout << fmt::format("{:<20} {:<18} {:>9} {:>11}", m.model, m.resolution, m.unknowns, m.constraints);
+    if (m.steps > 0) {
+      std::cout << fmt::format(" {:>12.6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>11.4g}", m.energy.normalized,
+                               m.isometry.area, m.isometry.diagonal, m.isometry.rim, m.step_us);
+    }
+    std::cout << "\n";
   }
 }
 
@@ -59,15 +62,18 @@ int compare_command(const CompareArguments& arguments) {
     });
   }
   if (interrupt_requested()) {
-    std::cerr << scene.name << ": interrupted; nothing was written\n";
-    return interrupted;
+    comparison.models.pop_back();  // the one that was under way
+    comparison.bodies.pop_back();
+    std::cerr << fmt::format("{}: interrupted; {} of {} models are done\n", scene.name, comparison.models.size(),
+                             models.size());
+    if (comparison.models.empty()) return interrupted;
   }
   io::write_comparison(folder, comparison, report::comparison_template());
   if (!arguments.quiet) {
     print_table(comparison);
     std::cout << folder.string() << "\n";
   }
-  return exit_code(comparison);
+  return interrupt_requested() ? interrupted : exit_code(comparison);
 }
 
 }  // namespace wunderlich::app

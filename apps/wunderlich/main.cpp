@@ -53,6 +53,45 @@ void add_export(CLI::App& program, ExportArguments& arguments, int& exit_code) {
   command->callback([&] { exit_code = export_command(arguments); });
 }
 
+void add_sweep_run(CLI::App& command, SweepArguments& arguments) {
+  command.add_option("sweep", arguments.sweep, "A sweep file")->type_name("SWEEP");
+  command.add_option("--out", arguments.out, "The sweep's folder; default out/<sweep>. What is there already is kept")
+      ->type_name("DIR");
+  command.add_option("--engine", arguments.engine, "local: processes on this machine; slurm: a job array of shards")
+      ->type_name("ENGINE");
+  command.add_option("--shard", arguments.shard, "Only the I-th of N parts, for any other engine")->type_name("I/N");
+  command.add_option("--jobs", arguments.jobs, "Processes; default one a core, on Slurm one a shard")->type_name("N");
+  command.add_flag("--retry", arguments.retry, "Do again what failed, timed out or did not converge");
+  command.add_option("--shards", arguments.shards, "Slurm: parts of the array; default one for every 500 runs")
+      ->type_name("N");
+  command.add_option("--walltime", arguments.walltime, "Slurm: limit of a shard, as sbatch takes it")
+      ->type_name("TIME");
+  command.add_option("--partition", arguments.partition, "Slurm: where to run")->type_name("NAME");
+  command.add_flag("--no-requeue", arguments.no_requeue, "Slurm: do not start a shard again whose node failed");
+  command.add_option("--sbatch", arguments.sbatch, "Slurm: a further argument of sbatch; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("ARGUMENT");
+  command.add_flag("--quiet", arguments.quiet, "Say nothing but errors");
+}
+
+void add_sweep(CLI::App& program, SweepArguments& arguments, std::string& folder, int& exit_code) {
+  CLI::App* command = program.add_subcommand("sweep", "Run a scene for many values of its keys");
+  add_sweep_run(*command, arguments);
+  CLI::App* status = command->add_subcommand("status", "Say how a sweep stands");
+  CLI::App* collect = command->add_subcommand("collect", "Write the table and the page of what a sweep has so far");
+  for (CLI::App* inner : {status, collect}) {
+    inner->add_option("folder", folder, "The sweep's folder")->required()->type_name("DIR");
+  }
+  command->require_subcommand(0, 1);
+  command->callback([&, command, status] {
+    const bool inner = !command->get_subcommands().empty();
+    if (!inner && arguments.sweep.empty()) throw CLI::RequiredError("sweep");
+    exit_code = !inner             ? sweep_command(arguments)
+                : status->parsed() ? sweep_status_command(folder)
+                                   : sweep_collect_command(folder);
+  });
+}
+
 void add_compare(CLI::App& program, CompareArguments& arguments, int& exit_code) {
   CLI::App* command = program.add_subcommand("compare", "Run a scene by other models as well, side by side");
   command->add_option("scene", arguments.scene, "A scene file, or the name of a shipped scene")
@@ -81,11 +120,14 @@ int run_program(int argc, char** argv) {
   RunArguments run;
   RunArguments check;
   ExportArguments exported;
+  SweepArguments swept;
+  std::string sweep_folder;
   CompareArguments compared;
   add_run(program, run, exit_code);
   add_check(program, check, exit_code);
   program.add_subcommand("scenes", "List the shipped scenes")->callback([&] { exit_code = scenes_command(); });
   add_export(program, exported, exit_code);
+  add_sweep(program, swept, sweep_folder, exit_code);
   add_compare(program, compared, exit_code);
   CLI::App* schema = program.add_subcommand("schema", "Print the scene format as Markdown");
   schema->callback([&] { exit_code = schema_command(); })->group("");

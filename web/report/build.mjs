@@ -1,4 +1,4 @@
-// Bundles src/ into two HTML pages, of a run and of a comparison, and writes them as C++ strings; the first as report.html too.
+// Bundles src/ into three HTML pages, of a run, of a comparison and of a sweep, and writes them as C++ strings; the first as report.html too.
 // usage: node build.mjs NODE_MODULES OUTPUT_FOLDER
 import { readFile, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
@@ -57,12 +57,14 @@ ${pieces.map((piece, index) => piece + (index === pieces.length - 1 ? 'sv' : '')
 
 const report = await build('page.html', 'main.ts');
 const comparison = await build('compare.html', 'compare.ts');
+const sweep = await build('sweep.html', 'sweep.ts');
 const source = `#include "wunderlich/report/report_template.hpp"
 
 namespace wunderlich::report {
 
 ${asFunction('report_template', report)}
 ${asFunction('comparison_template', comparison)}
+${asFunction('sweep_template', sweep)}
 }  // namespace wunderlich::report
 `;
 await writeFile(path.join(output, 'report.html'), report);

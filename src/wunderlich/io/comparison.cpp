@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "wunderlich/base/version.hpp"
+#include "wunderlich/io/file.hpp"
 #include "wunderlich/io/obj.hpp"
 #include "wunderlich/io/output_folder.hpp"
 #include "wunderlich/io/packed_body.hpp"
@@ -30,15 +31,18 @@ struct Column {
 /// Time a simulated second; a path of equilibria has none.
 double per_second(const ModelResult& m) { return m.moved_seconds > 0 ? m.wall_seconds / m.moved_seconds : 0; }
 
-constexpr std::array<Column, 16> columns{{
+constexpr std::array<Column, 18> columns{{
     {"unknowns", [](const ModelResult& m) { return static_cast<double>(m.unknowns); }},
     {"constraints", [](const ModelResult& m) { return static_cast<double>(m.constraints); }},
     {"elastic", [](const ModelResult& m) { return m.energy.elastic; }},
     {"normalized", [](const ModelResult& m) { return m.energy.normalized; }},
     {"kinetic", [](const ModelResult& m) { return m.energy.kinetic; }},
+    {"gravity", [](const ModelResult& m) { return m.energy.gravity; }},
     {"area_error", [](const ModelResult& m) { return m.isometry.area; }},
     {"diagonal_strain", [](const ModelResult& m) { return m.isometry.diagonal; }},
     {"rim_stretch", [](const ModelResult& m) { return m.isometry.rim; }},
+    {"length_error", [](const ModelResult& m) { return m.length_error; }},
+    {"missed_steps", [](const ModelResult& m) { return m.missed_steps; }},
     {"steps", [](const ModelResult& m) { return static_cast<double>(m.steps); }},
     {"iterations_mean", [](const ModelResult& m) { return m.iterations; }},
     {"step_us_median", [](const ModelResult& m) { return m.step_us; }},
@@ -46,7 +50,6 @@ constexpr std::array<Column, 16> columns{{
     {"moved_seconds", [](const ModelResult& m) { return m.moved_seconds; }},
     {"wall_per_second", per_second},
     {"frames", [](const ModelResult& m) { return static_cast<double>(m.frames.size()); }},
-    {"converged", [](const ModelResult& m) { return m.converged ? 1.0 : 0.0; }},
 }};
 
 double finite(double value, const ModelResult& model, const char* name) {
@@ -54,9 +57,19 @@ double finite(double value, const ModelResult& model, const char* name) {
   return value;
 }
 
+/// What says something of a shape, or of steps, says nothing of a model that never moved.
+bool has_figures(const ModelResult& model) { return model.steps > 0; }
+
+Json number_json(double value) {
+  return value == std::floor(value) && std::abs(value) < 1e15 ? Json(static_cast<long>(value)) : Json(value);
+}
+
 Json model_json(const ModelResult& model) {
   Json out = {{"model", model.model}, {"method", model.method}, {"resolution", model.resolution}};
-  for (const Column& column : columns) out[column.name] = finite(column.value(model), model, column.name);
+  for (const Column& column : columns) {
+    out[column.name] =
+        has_figures(model) ? number_json(finite(column.value(model), model, column.name)) : Json(nullptr);
+  }
   out["converged"] = model.converged;
   if (!model.failure.empty()) out["failure"] = model.failure;
   if (!model.notes.empty()) out["notes"] = model.notes;
@@ -94,6 +107,7 @@ Json shapes_json(const ModelResult& model, const std::vector<Body>& bodies) {
   out["bodies"] = Json::array();
   for (const Body& body : bodies) {
     std::vector<Pose> poses;
+    poses.reserve(frames.size());
     for (const Frame* frame : frames)
       poses.push_back(body.poses[static_cast<std::size_t>(frame - model.frames.data())]);
     out["bodies"].push_back(body_json(body.mesh, poses));
@@ -104,12 +118,14 @@ Json shapes_json(const ModelResult& model, const std::vector<Body>& bodies) {
 }  // namespace
 
 std::string comparison_csv(const Comparison& comparison) {
-  std::string out = "model,method,resolution";
+  std::string out = "model,method,resolution,converged";
   for (const Column& column : columns) out += fmt::format(",{}", column.name);
   out += "\n";
   for (const ModelResult& model : comparison.models) {
-    out += fmt::format("{},{},{}", model.model, model.method, model.resolution);
-    for (const Column& column : columns) out += fmt::format(",{}", finite(column.value(model), model, column.name));
+    out += fmt::format("{},{},{},{}", model.model, model.method, model.resolution, model.converged ? 1 : 0);
+    for (const Column& column : columns) {
+      out += has_figures(model) ? fmt::format(",{}", finite(column.value(model), model, column.name)) : ",";
+    }
     out += "\n";
   }
   return out;
@@ -132,7 +148,18 @@ std::string comparison_page(const Comparison& comparison, std::string_view page)
 
 bool is_comparison(const std::filesystem::path& folder) {
   std::error_code error;
-  return std::filesystem::is_regular_file(folder / "comparison.json", error);
+  const std::filesystem::path file = folder / "comparison.json";
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  const Json data = Json::parse(read_file(file, std::size_t{1} << 24), nullptr, false);
+  if (!data.is_object() || data.value("program", "") != program) return false;
+  // Whatever else is there is somebody else's, and stays.
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool ours = name == "comparison.json" || name == "comparison.csv" || name == "report.html" ||
+                      entry.path().extension() == ".obj";
+    if (!ours) return false;
+  }
+  return !error;
 }
 
 void write_comparison(const std::filesystem::path& folder, const Comparison& comparison, std::string_view page) {

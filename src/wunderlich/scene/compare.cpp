@@ -28,6 +28,14 @@ void count_ribbon(const Scene& scene, ModelResult& result) {
   result.unknowns = 2 * n + 6;  // curvature and ruling of each hinge, and the first pose
 }
 
+/// The clock of a path runs on while supports are approached and while it settles; other models know the load
+/// parameter.
+double load_at(const Scene& scene, double clock, double last) {
+  const double duration = scene.solver.duration;
+  if (scene.ribbon.closure == geometry::Closure::loop) return duration * clock / last;
+  return std::clamp(clock - (last - duration - solver::kSettleTime), 0.0, duration);
+}
+
 ModelResult run_ribbon(const Scene& scene, const Observer& observer) {
   const RunResult run = scene::run(scene, observer);
   ModelResult result;
@@ -47,7 +55,10 @@ ModelResult run_ribbon(const Scene& scene, const Observer& observer) {
   result.iterations = run.summary.timing.iterations_mean;
   result.wall_seconds = run.summary.timing.wall_seconds;
   result.moved_seconds = path ? 0 : last.time;
-  for (const Record& record : run.progress.records) result.frames.push_back(frame_of(scene, record));
+  for (const Record& record : run.progress.records) {
+    result.frames.push_back(frame_of(scene, record));
+    if (path && last.time > 0) result.frames.back().time = load_at(scene, result.frames.back().time, last.time);
+  }
   return result;
 }
 

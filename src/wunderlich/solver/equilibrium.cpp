@@ -20,7 +20,6 @@ constexpr double kLargestTurn = 1;    // of a support in one load step [rad]
 constexpr int kProximalPasses = 3;    // minimisations with a fictitious mass a load step
 constexpr double kProximity = 1e4;    // that mass, in units of D w / l^4 per length
 constexpr int kSettleRounds = 30;
-constexpr double kSettleTime = 0.05;    // on the clock of the path, for the film
 constexpr int kMaxSteps = 5000;         // of a path whose orientation constraints do not come to rest
 constexpr double kTurnedAtRest = 1e-9;  // of a tangent between two solutions at rest [rad]
 

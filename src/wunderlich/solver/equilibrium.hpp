@@ -43,6 +43,7 @@ struct PathProblem {
 /// bend, twist and close make a loop of the flat strip, and where it feels itself relax lets it come to rest; approach
 /// brings supports and loads from where the strip is to where they are at t = 0; load follows them in time; settle ends
 /// at a static minimum.
+inline constexpr double kSettleTime = 0.05;  ///< that settling takes on the clock of the path, for the film
 enum class Phase { bend, twist, close, relax, approach, load, settle, done };
 const char* phase_name(Phase phase);
 

@@ -1,21 +1,28 @@
 // The page of a comparison: one view a model, all at the same share of their runs, and the table of figures.
 import { readModels, type ModelRun } from './compare_data';
+import type { Frame } from './data';
 import { byId, element, number, seconds } from './format';
 import { createViewer, type Viewer } from './viewer';
 
 type Row = [string, (model: ModelRun) => string];
+
+const given = (value: number | null, digits: number) => (value === null ? '–' : number(value, digits));
 
 const rows: Row[] = [
   ['method', (m) => m.method],
   ['resolution', (m) => m.resolution],
   ['unknowns', (m) => String(m.unknowns)],
   ['constraints', (m) => String(m.constraints)],
-  ['elastic energy V·l/(D·w)', (m) => number(m.normalized, 5)],
-  ['relative area error', (m) => number(m.area_error, 3)],
-  ['diagonal strain, largest', (m) => number(m.diagonal_strain, 3)],
-  ['rim stretch', (m) => number(m.rim_stretch, 3)],
-  ['steps', (m) => String(m.steps)],
+  ['elastic energy V·l/(D·w)', (m) => given(m.normalized, 5)],
+  ['elastic, kinetic, gravity [J]', (m) => [m.elastic, m.kinetic, m.gravity].map((e) => given(e, 3)).join(', ')],
+  ['relative area error', (m) => given(m.area_error, 3)],
+  ['diagonal strain, largest', (m) => given(m.diagonal_strain, 3)],
+  ['rim stretch', (m) => given(m.rim_stretch, 3)],
+  ['length error of constraints, at the end', (m) => given(m.length_error, 3)],
+  ['steps that missed the tolerance', (m) => (m.missed_steps === null ? '–' : `${number(100 * m.missed_steps, 3)} %`)],
+  ['steps', (m) => String(m.steps ?? '–')],
   ['time a step, median', (m) => seconds(1e-6 * m.step_us_median)],
+  ['of it', (m) => Object.entries(m.phases_us ?? {}).map(([name, us]) => `${name} ${seconds(1e-6 * us)}`).join(', ') || '–'],
   ['time in all', (m) => seconds(m.wall_seconds)],
   ['time a simulated second', (m) => (m.moved_seconds > 0 ? seconds(m.wall_per_second) : '–')],
 ];
@@ -34,6 +41,21 @@ function tryViewer(model: ModelRun, host: HTMLElement, seenAs: ModelRun): Viewer
     host.append(element('p.notice', {}, 'This browser offers no WebGL.'));
     return null;
   }
+}
+
+/** A frame index, not whole between two frames, at a load or time. */
+function positionAt(frames: Frame[], time: number): number {
+  let k = 0;
+  while (k < frames.length - 1 && frames[k + 1].time <= time) ++k;
+  if (k === frames.length - 1) return k;
+  const span = frames[k + 1].time - frames[k].time;
+  return k + (span > 0 ? Math.max(0, Math.min(1, (time - frames[k].time) / span)) : 0);
+}
+
+/** From the first frame to the last of the model that takes longest. */
+function timesOf(models: ModelRun[]): [number, number] {
+  const all = models.flatMap((m) => m.run.frames.map((frame) => frame.time));
+  return [Math.min(...all), Math.max(...all)];
 }
 
 function isDark(): boolean {
@@ -64,10 +86,11 @@ function start() {
   });
   applyTheme();
 
+  const [from, to] = timesOf(models);
   const scrub = byId<HTMLInputElement>('scrub'), play = byId('play');
   const show = (share: number) => {
     scrub.value = String(share);
-    views.forEach(({ model, viewer }) => viewer?.show(share * (model.run.frames.length - 1)));
+    views.forEach(({ model, viewer }) => viewer?.show(positionAt(model.run.frames, from + share * (to - from))));
   };
   let playing = false, before = 0;
   const setPlaying = (on: boolean) => { playing = on; play.textContent = on ? '❚❚' : '▶'; };

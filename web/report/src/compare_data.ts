@@ -3,8 +3,11 @@ import { body, bytes, normals, points, type Frame, type Run } from './data';
 
 export interface ModelRun {
   model: string; method: string; resolution: string; converged: boolean; failure?: string; notes?: string[];
-  unknowns: number; constraints: number; normalized: number;
-  area_error: number; diagonal_strain: number; rim_stretch: number;
+  unknowns: number; constraints: number; phases_us?: Record<string, number>;
+  // Those of a shape are null where the model never moved.
+  normalized: number | null; elastic: number | null; kinetic: number | null; gravity: number | null;
+  area_error: number | null; diagonal_strain: number | null; rim_stretch: number | null;
+  length_error: number | null; missed_steps: number | null;
   steps: number; step_us_median: number; wall_seconds: number; moved_seconds: number; wall_per_second: number;
   run: Run;
 }

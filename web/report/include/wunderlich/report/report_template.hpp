@@ -11,4 +11,7 @@ std::string_view report_template();
 /// The same for a comparison of models, see `wunderlich::io::comparison_page`.
 std::string_view comparison_template();
 
+/// The same for a sweep, see `wunderlich::sweep::collect`.
+std::string_view sweep_template();
+
 }  // namespace wunderlich::report

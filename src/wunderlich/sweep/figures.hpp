@@ -1,0 +1,20 @@
+/// Figures of a run by name.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace wunderlich::sweep {
+
+/// `energy.normalized`, `ends.1.force.0`, `kappa_zeros.count` of the summary, `shape.max_kappa`; NaN where this run has
+/// none. Truth is 1.
+double figure(const nlohmann::ordered_json& body, const std::string& path);
+
+/// Whether any run can have such a figure.
+bool is_figure(const std::string& path);
+
+/// The figures that have no numbers in their names, for messages.
+std::vector<std::string> figure_names();
+
+}  // namespace wunderlich::sweep
