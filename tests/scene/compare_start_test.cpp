@@ -1,0 +1,58 @@
+// Where the models of a comparison start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "wunderlich/scene/compare.hpp"
+#include "wunderlich/scene/read.hpp"
+
+namespace wunderlich::scene {
+namespace {
+
+Scene scene_of(const char* text) { return read_scene_text(text, "start.yaml", {}); }
+
+/// Largest distance of the surface's rims' four corners at the first frame from those of the ribbon.
+double corners_apart(const Scene& scene, Model model) {
+  const Observer go_on = [](const RunStatus&) { return true; };
+  const Mesh ribbon = run_model(scene, Model::ribbon, go_on).frames.front().surface;
+  const ModelResult other = run_model(scene, model, go_on);
+  const auto& points = other.frames.front().surface.points;
+  double apart = 0;
+  for (const Vec3& corner : {points.front(), points.back()}) {
+    double nearest = 1e9;
+    for (const Vec3& at : ribbon.points) nearest = std::min(nearest, (at - corner).norm());
+    apart = std::max(apart, nearest);
+  }
+  return apart;
+}
+
+const char* const kCoil = R"(
+ribbon: {length: 1, width: 0.1, segments: 40, bending_stiffness: 1e-6, area_density: 1}
+initial: {shape: coil, radius: 0.2, slope: 0.3, position: [1, 2, 3], tangent: [0, 0, 1], normal: [1, 0, 0], spin: [0, 0, 2]}
+solver: {duration: 0.002, time_step: 0.001}
+compare: {shell_conforming: {along: 41, across: 4}, shell_nonconforming: {along: 41, across: 4}}
+)";
+
+TEST(CompareStart, ShellsStartOnTheRibbonsCoil) {
+  const Scene scene = scene_of(kCoil);
+  EXPECT_LT(corners_apart(scene, Model::shell_conforming), 1e-9);
+  EXPECT_LT(corners_apart(scene, Model::shell_nonconforming), 5e-3);  // drawn from midpoints
+}
+
+// A clamp at the end alone, away from where the flat strip has it: the energy is that of a beam, q^2 w l^5/(40 D).
+TEST(CompareStart, AClampAtTheEndAlonePlacesAShell) {
+  const Scene scene = scene_of(R"(
+ribbon: {length: 1, width: 0.1, segments: 20, bending_stiffness: 1, area_density: 1}
+clamps: [{at: end, position: [1, 1, 1]}]
+gravity: [0, 0, -0.1]
+solver: {method: equilibrium}
+compare: {time_step: 0.02, shell_conforming: {along: 11, across: 3}}
+)");
+  const ModelResult shell = run_model(scene, Model::shell_conforming, [](const RunStatus&) { return true; });
+  EXPECT_TRUE(shell.converged) << shell.failure;
+  EXPECT_NEAR(shell.energy.elastic / 2.5e-5, 1, 0.02);
+  EXPECT_LT(shell.length_error, 1e-6);
+}
+
+}  // namespace
+}  // namespace wunderlich::scene
