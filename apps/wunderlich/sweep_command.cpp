@@ -137,7 +137,8 @@ int sweep_command(const SweepArguments& arguments) {
     const std::size_t tried = std::max(kTried, static_cast<std::size_t>(options.jobs));
     if (now.runs - now.finished > tried) {
       go(tried);
-      std::cout << fmt::format("about {} with {} processes, as {} runs took\n", duration(now.left()), options.jobs, tried)
+      std::cout << fmt::format("about {} with {} processes, as {} runs took\n", duration(now.left()), options.jobs,
+                               tried)
                 << std::flush;
     }
   }
