@@ -26,6 +26,7 @@ clang++             clang               test
 libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
 clang-tidy          clang-tidy          test
+admesh              admesh              test
 python3-matplotlib  python3-matplotlib  validation
 '
 

@@ -31,7 +31,8 @@ int schema_command();
 struct ExportArguments {
   std::string run;  ///< a run folder
   std::string format;
-  std::string out;  ///< empty: in the run folder, under the name `run` would give it
+  std::string out;                  ///< empty: in the run folder, under the name `run` would give it
+  std::optional<double> thickness;  ///< of a body to print [m]
 };
 
 int export_command(const ExportArguments& arguments);

@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/base/version.hpp"
+#include "wunderlich/io/formats.hpp"
 
 namespace wunderlich::app {
 
@@ -29,7 +30,7 @@ void add_run(CLI::App& program, RunArguments& arguments, int& exit_code) {
   add_set(*command, arguments.set);
   command
       ->add_option("--formats", arguments.formats,
-                   "vtp,glb,pc2,obj,svg,html or none; default: the scene's, vtp,glb,svg,html")
+                   "vtp,glb,pc2,obj,stl,3mf,svg,html or none; default: the scene's, vtp,glb,svg,html")
       ->type_name("LIST");
   command->add_flag("--resume", arguments.resume, "Go on with an interrupted run, exactly as if it had not been");
   command->add_flag("--quiet", arguments.quiet, "Say nothing but errors");
@@ -48,7 +49,16 @@ void add_check(CLI::App& program, RunArguments& arguments, int& exit_code) {
 void add_export(CLI::App& program, ExportArguments& arguments, int& exit_code) {
   CLI::App* command = program.add_subcommand("export", "Write a finished or interrupted run in another format");
   command->add_option("run", arguments.run, "A run folder")->required()->type_name("RUN");
-  command->add_option("--to", arguments.format, "vtp, glb, pc2, obj, svg or html")->required()->type_name("FORMAT");
+  command
+      ->add_option("--to", arguments.format,
+                   io::format_names() + "; svg-pattern is svg, stl and 3mf are bodies to print")
+      ->required()
+      ->type_name("FORMAT");
+  command
+      ->add_option("--thickness", arguments.thickness,
+                   "Of the body, for stl, 3mf and obj; default: ribbon.thickness, or a fiftieth of the width, for obj "
+                   "the bare surface")
+      ->type_name("METRES");
   command->add_option("--out", arguments.out, "The file to write; default: in the run folder")->type_name("FILE");
   command->callback([&] { exit_code = export_command(arguments); });
 }

@@ -55,7 +55,8 @@ class Export(ProgramTest):
 
     def test_writes_beside_the_run_by_default(self):
         for name, files in {"obj": ["ribbon.obj"], "glb": ["ribbon.glb"], "vtp": ["ribbon.pvd"], "pc2": ["ribbon.pc2"],
-                            "svg": ["pattern.svg"], "html": ["report.html"]}.items():
+                            "svg": ["pattern.svg"], "svg-pattern": ["pattern.svg"], "html": ["report.html"],
+                            "stl": ["ribbon.stl"], "3mf": ["ribbon.3mf"]}.items():
             result = self.expect(0, "export", "run", "--to", name)
             for file in files:
                 self.assertIn(file, result.stdout)

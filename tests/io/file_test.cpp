@@ -52,11 +52,13 @@ TEST(Checksum, IsFnv1a) { EXPECT_EQ(checksum("foobar"), 0x85944171f73967e8u); }
 
 TEST(Formats, AreParsedFromAList) {
   EXPECT_EQ(parse_formats("svg, html,svg"), (std::vector<Format>{Format::svg, Format::html}));
+  EXPECT_EQ(parse_formats("svg-pattern"), std::vector<Format>{Format::svg});
   EXPECT_TRUE(parse_formats("none").empty());
-  EXPECT_EQ(parse_formats("vtp,glb,pc2,obj,svg,html").size(), 6u);
-  for (const Format format : parse_formats("vtp,glb,pc2,obj,svg,html")) EXPECT_EQ(parse_format(name(format)), format);
-  for (const char* bad : {"", "vtp,", "VTP", "stl", "none,vtp"}) {
-    EXPECT_NE(input_error([&] { parse_formats(bad); }).find("allowed are vtp, glb, pc2, obj, svg, html"),
+  EXPECT_EQ(parse_formats("vtp,glb,pc2,obj,stl,3mf,svg,html").size(), 8u);
+  for (const Format format : parse_formats("vtp,glb,pc2,obj,stl,3mf,svg,html"))
+    EXPECT_EQ(parse_format(name(format)), format);
+  for (const char* bad : {"", "vtp,", "VTP", "step", "none,vtp"}) {
+    EXPECT_NE(input_error([&] { parse_formats(bad); }).find("allowed are vtp, glb, pc2, obj, stl, 3mf, svg, html"),
               std::string::npos)
         << bad;
   }

@@ -57,6 +57,9 @@ struct FlatPattern {
   double width = 0;                                     ///< [m]
   std::vector<std::array<Eigen::Vector2d, 2>> rulings;  ///< end points of each node's ruling [m]
   std::vector<double> fold_angle;                       ///< signed turn about each ruling [rad]
+  bool loop = false;                                    ///< its two ends are joined
+  int half_twists = 0;                                  ///< of a loop
+  double thickness = 0;                                 ///< of the material [m]; 0: not known
 };
 
 }  // namespace wunderlich

@@ -146,6 +146,8 @@ FlatPattern flat_pattern(const Ribbon& ribbon, const State& state) {
   FlatPattern pattern;
   pattern.length = ribbon.length;
   pattern.width = ribbon.width;
+  pattern.loop = ribbon.is_loop();
+  pattern.half_twists = ribbon.half_twists;
   for (std::size_t i = 0; i < state.eta.size(); ++i) {
     const double u = ribbon.node_u[i];
     const double eta = state.eta[i];

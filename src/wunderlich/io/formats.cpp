@@ -12,10 +12,12 @@ namespace wunderlich::io {
 
 namespace {
 
-constexpr std::array<std::pair<Format, std::string_view>, 6> names{{{Format::vtp, "vtp"},
+constexpr std::array<std::pair<Format, std::string_view>, 8> names{{{Format::vtp, "vtp"},
                                                                     {Format::glb, "glb"},
                                                                     {Format::pc2, "pc2"},
                                                                     {Format::obj, "obj"},
+                                                                    {Format::stl, "stl"},
+                                                                    {Format::mf3, "3mf"},
                                                                     {Format::svg, "svg"},
                                                                     {Format::html, "html"}}};
 
@@ -31,11 +33,18 @@ std::string_view name(Format format) {
   return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.first == format; })->second;
 }
 
+std::string format_names() {
+  std::string list;
+  for (const auto& [format, known] : names) list += (list.empty() ? "" : ", ") + std::string(known);
+  return list;
+}
+
 Format parse_format(std::string_view text) {
+  if (text == "svg-pattern") return Format::svg;
   for (const auto& [format, known] : names) {
     if (known == text) return format;
   }
-  throw InputError(fmt::format("unknown format '{}'; allowed are vtp, glb, pc2, obj, svg, html", text));
+  throw InputError(fmt::format("unknown format '{}'; allowed are {}", text, format_names()));
 }
 
 std::vector<Format> parse_formats(std::string_view list) {

@@ -13,8 +13,11 @@
 #include "wunderlich/io/obj.hpp"
 #include "wunderlich/io/pc2.hpp"
 #include "wunderlich/io/report.hpp"
+#include "wunderlich/io/solid.hpp"
+#include "wunderlich/io/stl.hpp"
 #include "wunderlich/io/summary_json.hpp"
 #include "wunderlich/io/svg.hpp"
+#include "wunderlich/io/three_mf.hpp"
 #include "wunderlich/io/vtp.hpp"
 
 namespace wunderlich::io {
@@ -87,7 +90,11 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
       return {{ribbon + "_rest.obj", obj(output.frames.front().surface, "ribbon")},
               {ribbon + ".pc2", pc2(output.frames)}};
     case Format::obj:
-      return {{ribbon + ".obj", obj(final_surface, "ribbon")}};
+      return {{ribbon + ".obj", output.thickness ? obj(solids(output), "ribbon") : obj(final_surface, "ribbon")}};
+    case Format::stl:
+      return {{ribbon + ".stl", stl(solids(output), output.summary.scene)}};
+    case Format::mf3:
+      return {{ribbon + ".3mf", three_mf(solids(output), output.summary.scene)}};
     case Format::svg:
       return render_patterns(output, stem.empty() ? "pattern" : stem);
     case Format::html:

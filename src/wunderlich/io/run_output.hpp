@@ -1,6 +1,7 @@
 /// Everything a finished, failed or interrupted run has to say.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +23,7 @@ struct RunOutput {
   std::vector<Frame> frames;          ///< at least one; the last is the final state
   std::vector<Body> bodies;           ///< obstacles
   std::vector<FlatPattern> patterns;  ///< of the final state, one a strip; at least one
+  std::optional<double> thickness;    ///< of bodies to print [m]; without it that of each strip's material
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides
   Checkpoint checkpoint;

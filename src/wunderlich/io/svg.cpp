@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "wunderlich/io/xml.hpp"
+
 namespace wunderlich::io {
 
 namespace {
@@ -29,21 +31,6 @@ Box bounds(const FlatPattern& pattern) {
     }
   }
   return box;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (static_cast<unsigned char>(c) >= 0x20)
-      out += c;
-  }
-  return out;
 }
 
 /// Fold lines of one sign, those at the ends left out: they lie on the cut.
@@ -87,7 +74,7 @@ std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2:.4f}mm\" height=\"{3:.4f}mm\" "
       "viewBox=\"{0:.4f} {1:.4f} {2:.4f} {3:.4f}\">\n<title>{4}</title>\n",
-      left, top, width, height, escaped(title));
+      left, top, width, height, escaped_xml(title));
   // Lines one pixel wide at any zoom (a quarter of a millimetre on paper): a strip may be 6 mm long or 6 m.
   out += fmt::format(
       "<style>#cut,#valley,#mountain{{fill:none;stroke:#000;stroke-width:1px}} "
@@ -100,7 +87,7 @@ std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
   out += fmt::format(
       "<g id=\"legend\"><text x=\"{:.4f}\" y=\"{:.4f}\">{}: {:.6g} × {:.6g} mm, front; black: cut, blue: valley, red: "
       "mountain</text></g>\n",
-      box.left, box.bottom + 1.6 * letter, escaped(title), mm * pattern.length, mm * pattern.width);
+      box.left, box.bottom + 1.6 * letter, escaped_xml(title), mm * pattern.length, mm * pattern.width);
   return out + "</svg>\n";
 }
 

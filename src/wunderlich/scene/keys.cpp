@@ -299,9 +299,9 @@ const std::vector<Key> after_solver = {
      Type::choices,
      "",
      0,
-     6,
+     8,
      "[vtp, glb, svg, html]",
-     {"vtp", "glb", "pc2", "obj", "svg", "html"},
+     {"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html"},
      "Files to write beside the tables; `--formats` on the command line goes before it."},
 };
 

@@ -110,6 +110,8 @@ void check_ribbons(const Cell& root) {
 /// What the scene says of one strip and all that surrounds it.
 void build_strip(const Cell& root, Scene& scene) {
   scene.ribbon = build_ribbon(root);
+  const Cell thickness = child(child(root, "ribbon"), "thickness");
+  scene.thickness = thickness.value != nullptr ? number(thickness) : 0;
   scene.surroundings = build_surroundings(root, scene.ribbon);
   scene.obstacle_places = places_of(child(root, "obstacles"));
   if (const Cell contact = child(root, "contact"); contact.value != nullptr) scene.contact_place = place_of(contact);

@@ -66,6 +66,7 @@ std::vector<FlatPattern> patterns_of(const Scene& scene, const Record& record) {
   std::vector<FlatPattern> patterns;
   for (std::size_t i = 0; i < strips.size(); ++i) {
     patterns.push_back(geometry::flat_pattern(ribbon_of(*strips[i], record.states[i]), record.states[i]));
+    patterns.back().thickness = strips[i]->thickness;
   }
   return patterns;
 }

@@ -95,6 +95,7 @@ struct Scene {
   std::string written;   ///< the scene as YAML before overrides
   std::string resolved;  ///< the same after all overrides: what `--resume` runs again
   geometry::RibbonSpec ribbon;
+  double thickness = 0;  ///< of the material [m]; 0: not given
   constraint::Surroundings surroundings;
   std::vector<std::string> obstacle_places;  ///< where each was written, `file:line:column: key`, for messages
   std::string contact_place;                 ///< the same of `contact`
