@@ -90,11 +90,13 @@ bool is_sweep_folder(const fs::path& folder) {
 
 namespace {
 
-/// Nothing but what begins with a dot: our own drafts, of a process that was killed or is under way.
+/// Nothing but what a process leaves that was killed while it prepared a folder, or that is about to: drafts, which begin
+/// with a dot, and the scene, which comes before the sweep.
 bool is_unused(const fs::path& folder) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().filename().string().front() != '.') return false;
+    const std::string name = entry.path().filename().string();
+    if (name.front() != '.' && name != kSceneFile) return false;
   }
   return !error;
 }

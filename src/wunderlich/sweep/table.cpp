@@ -181,13 +181,17 @@ struct PageData {
   }
 };
 
-/// To be called in the sweep's folder, unless the scene is a shipped one.
-std::string command_of(const Sweep& sweep, std::size_t run) {
+/// How the base scene is run: by its name if it is a shipped one, else from the sweep's folder.
+std::string base_command(const Sweep& sweep) {
   const auto& shipped = scene::shipped_scenes();
   const bool known = std::any_of(shipped.begin(), shipped.end(), [&](const scene::ShippedScene& s) {
     return s.name == sweep.scene_name && scene::read_scene(s.name).written == sweep.scene_text;
   });
-  std::string out = "wunderlich run " + (known ? sweep.scene_name : std::string(kSceneFile));
+  return "wunderlich run " + (known ? sweep.scene_name : std::string(kSceneFile));
+}
+
+std::string command_of(const Sweep& sweep, const std::string& base, std::size_t run) {
+  std::string out = base;
   for (const std::string& assignment : assignments_of(sweep, run)) out += " --set " + shell_word(assignment);
   return out;
 }
@@ -207,11 +211,11 @@ std::string escaped(const std::string& text) {
 }
 
 /// What is kept of a run, as a part of the page of all runs.
-std::string run_entry(const Sweep& sweep, std::size_t run, const Row& row) {
+std::string run_entry(const Sweep& sweep, const std::string& base, std::size_t run, const Row& row) {
   if (!row.record) return "";
   std::string out = fmt::format("<h2 id=\"{}\">run {}: {}</h2>\n<pre>", row.key, run, status_name(row.record->status));
   if (!row.record->reason.empty()) out += escaped(row.record->reason) + "\n";
-  out += escaped(command_of(sweep, run)) + "\n";
+  out += escaped(command_of(sweep, base, run)) + "\n";
   out += escaped(row.record->body);  // as it is: taking it apart for a nicer look would cost a tenth of a small run
   return out + "</pre>\n";
 }
@@ -261,12 +265,13 @@ std::size_t collect(const fs::path& folder, const Sweep& sweep, std::string_view
   table << head_row(sweep);
   runs << runs_head(sweep);
   PageData data(sweep);
+  const std::string base = base_command(sweep);
   std::size_t there = 0;
   each_row(sweep, store, [&](std::size_t run, const Row& row) {
     there += row.record.has_value();
     table << csv_row(sweep, run, row);
     data.add(sweep, row);
-    runs << run_entry(sweep, run, row);
+    runs << run_entry(sweep, base, run, row);
   });
   runs << "</body></html>\n";
   runs.finish();
