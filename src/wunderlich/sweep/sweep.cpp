@@ -90,8 +90,8 @@ bool is_sweep_folder(const fs::path& folder) {
 
 namespace {
 
-/// Nothing but what a process leaves that was killed while it prepared a folder, or that is about to: drafts, which begin
-/// with a dot, and the scene, which comes before the sweep.
+/// Nothing but what a process leaves that was killed while it prepared a folder, or that is about to: drafts, which
+/// begin with a dot, and the scene, which comes before the sweep.
 bool is_unused(const fs::path& folder) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
