@@ -30,7 +30,8 @@ class Validation(ProgramTest):
     def test_every_claim_holds(self):
         code, printed, failed = self.validate()
         self.assertEqual(code, 0, printed)
-        self.assertEqual(set(failed), {"facets", "area", "dynamics-alpha", "moebius-profile", "coil", "belts", "taylor"})
+        self.assertEqual(set(failed), {"facets", "area", "dynamics-alpha", "moebius-profile", "loop", "coil", "drape",
+                                       "belts", "models", "taylor"})
 
     def test_a_softer_coupling_is_noticed(self):
         code, printed, failed = self.validate("area", program=self.wrapped("--set solver.weight_scale=0.1"))

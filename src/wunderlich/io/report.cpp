@@ -136,6 +136,7 @@ Json report_json(const RunOutput& output) {
   data["bodies"] = Json::array();
   for (const Body& body : output.bodies) {
     std::vector<Pose> poses;
+    poses.reserve(frames.size());
     for (const Frame* frame : frames)
       poses.push_back(body.poses[static_cast<std::size_t>(frame - output.frames.data())]);
     data["bodies"].push_back(body_json(body.mesh, poses));

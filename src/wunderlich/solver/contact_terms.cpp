@@ -80,8 +80,7 @@ void add_keeping(const ContactFacet& facet, const Touch& touch, double force, Ei
   const double side = 2 * facet.sag[0] * touch.v, ruling = 2 * facet.sag[1];
   const double longer = side * facet.length_at(touch.v), leans = ruling * facet.eta_at(touch.share);
   const double early = sums.eta_free[0] * (1 - touch.share), late = sums.eta_free[1] * touch.share;
-  nearer.high[2] += sums.eta_free[0] * longer - early * leans;
-  nearer.high[3] -= sums.eta_free[1] * longer + late * leans;
+  nearer.high += Four{0, 0, sums.eta_free[0] * longer - early * leans, -sums.eta_free[1] * longer - late * leans};
   sums.keeping[0] += force * (sums.eta_free[0] * side * touch.v + ruling * early * early);
   sums.keeping[1] += force * (ruling * early * late - sums.eta_free[0] * sums.eta_free[1] * side * touch.v);
   sums.keeping[2] += force * (sums.eta_free[1] * side * touch.v + ruling * late * late);
