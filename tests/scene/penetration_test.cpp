@@ -99,7 +99,10 @@ void expect_clear(const std::string& name, double until, double allowed, std::ve
   }
   std::printf("  %-16s %4zu records, smallest distance to a solid %.3g m, %d touch\n", name.c_str(),
               result.progress.records.size(), least, touched);
-  EXPECT_GT(touched, 0) << name << " touches nothing";
+  // A slow build follows a scene for a moment only.
+  if (!testing::is_slow_build()) {
+    EXPECT_GT(touched, 0) << name << " touches nothing";
+  }
   EXPECT_GT(least, thickness - allowed) << name;
   // What the run says of itself is a bound from below, of all steps.
   ASSERT_TRUE(result.summary.contact);
