@@ -1,5 +1,6 @@
 // Obstacles from OBJ files: what is read, what a run keeps of it, and what is refused.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,8 @@ const char* const kTetrahedron =
 
 /// A folder of its own that goes with the test.
 struct Folder {
-  std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "wunderlich-mesh-obstacle";
+  std::filesystem::path path =
+      std::filesystem::path(::testing::TempDir()) / ("wunderlich-mesh-obstacle-" + std::to_string(::getpid()));
   Folder() { std::filesystem::create_directories(path); }
   ~Folder() { std::filesystem::remove_all(path); }
   std::string write(const std::string& name, const std::string& text) const {
