@@ -82,7 +82,9 @@ def main() -> None:
         for scene in options.scenes or COMPARED:
             with tempfile.TemporaryDirectory() as folder:
                 out = pathlib.Path(folder) / scene
-                subprocess.run([options.program, "compare", scene, "--out", str(out), "--quiet"], check=True)
+                code = subprocess.run([options.program, "compare", scene, "--out", str(out), "--quiet"]).returncode
+                if code not in (0, 3):  # 3: a model did not converge; its last state is drawn
+                    raise SystemExit(f"{scene}: exit code {code}")
                 photograph_models(out / "report.html", images / f"compare-{scene}.png")
         return
     for scene in options.scenes or sorted(path.stem for path in (ROOT / "scenes").glob("*.yaml")):
