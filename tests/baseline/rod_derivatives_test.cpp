@@ -19,7 +19,6 @@ rod::Unknowns all_free(const Rod& sample, const rod::State& state) {
 rod::Objective no_loads(const Rod& sample) {
   rod::Objective objective;
   objective.force.assign(sample.nodes(), Vec3::Zero());
-  objective.moment.assign(sample.edges(), 0.0);
   return objective;
 }
 

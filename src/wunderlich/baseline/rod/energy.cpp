@@ -108,28 +108,33 @@ void add_curving(const Bend& b, const Vec3& cross, const Reading& r, double soft
   }
 }
 
-/// Energy of bending by one reading, its derivatives by (e, theta before, f, theta after) added.
-void add_bending(const Bend& b, const Vec3& cross, const Reading& r, double soft, double hard, Vec8& g, Mat8& h) {
+/// One measure of strain by (e, theta before, f, theta after).
+struct Measure {
+  double strain = 0;
+  Vec8 slope;
+};
+
+/// Bending about m2 and about m1, by one reading.
+std::array<Measure, 2> bending(const Bend& b, const Vec3& cross, const Reading& r) {
   const Vec3 m1 = -(r.before * b.before.m1 + r.after * b.after.m1), m2 = r.before * b.before.m2 + r.after * b.after.m2;
-  const double q1 = half_bend(b, cross, m1), q2 = half_bend(b, cross, m2);
-  const Slopes by_edges_1 = slopes(b, m1, q1), by_edges_2 = slopes(b, m2, q2);
   const auto q = [&](const Vec3& d) { return half_bend(b, cross, d); };
-  Vec8 slope1, slope2;
-  slope1 << by_edges_1.e, -r.before * q(b.before.m2), by_edges_1.f, -r.after * q(b.after.m2);
-  slope2 << by_edges_2.e, -r.before * q(b.before.m1), by_edges_2.f, -r.after * q(b.after.m1);
-  g += (soft * q2) * slope2 + (hard * q1) * slope1;
-  h += (soft * slope2) * slope2.transpose() + (hard * slope1) * slope1.transpose();
-  add_curving(b, cross, r, soft * q2, hard * q1, h);
+  Measure soft{q(m2), {}}, hard{q(m1), {}};
+  const Slopes by_edges_2 = slopes(b, m2, soft.strain), by_edges_1 = slopes(b, m1, hard.strain);
+  soft.slope << by_edges_2.e, -r.before * q(b.before.m1), by_edges_2.f, -r.after * q(b.after.m1);
+  hard.slope << by_edges_1.e, -r.before * q(b.before.m2), by_edges_1.f, -r.after * q(b.after.m2);
+  return {soft, hard};
 }
 
-/// The same of twisting.   @eq Bergou2010
-void add_twisting(const Bend& b, const Vec3& cross, double twist, Vec8& g, Mat8& h) {
+/// @eq Bergou2010
+Measure twisting(const Bend& b, const Vec3& cross) {
+  Measure out{b.twist, {}};
+  out.slope << cross / (b.scale * b.e_len), -1, cross / (b.scale * b.f_len), 1;
+  return out;
+}
+
+/// Adds moment times second derivative of the twist.   @eq Bergou2010
+void add_twisted_turning(const Bend& b, const Vec3& cross, double moment, Mat8& h) {
   const Vec3 &t = b.before.m3, &u = b.after.m3;
-  const double moment = twist * b.twist;
-  Vec8 slope;
-  slope << cross / (b.scale * b.e_len), -1, cross / (b.scale * b.f_len), 1;
-  g += moment * slope;
-  h += (twist * slope) * slope.transpose();
   const Vec3 binormal = 2 / b.scale * cross, tilde = (t + u) / (1 + t.dot(u));
   h.block<3, 3>(0, 0) -= moment / (4 * b.e_len * b.e_len) * both(binormal, t + tilde);
   h.block<3, 3>(4, 4) -= moment / (4 * b.f_len * b.f_len) * both(binormal, u + tilde);
@@ -139,12 +144,24 @@ void add_twisting(const Bend& b, const Vec3& cross, double twist, Vec8& g, Mat8&
   h.block<3, 3>(4, 0) += mixed.transpose();
 }
 
+/// Adds the energy stiffness strain^2/2 of a measure, but for what its second derivative makes.
+void add_measure(const Measure& m, double stiffness, Vec8& g, Mat8& h) {
+  g += (stiffness * m.strain) * m.slope;
+  h += (stiffness * m.slope) * m.slope.transpose();
+}
+
 /// From edge vectors to nodes: e = x1 - x0, f = x2 - x1.
+Vec11 by_nodes(const Vec8& g) {
+  Vec11 out;
+  out << -g.head<3>(), g[3], g.head<3>() - g.segment<3>(4), g[7], g.segment<3>(4);
+  return out;
+}
+
 HingeTerms by_nodes(const Vec8& g, const Mat8& h) {
   Eigen::Matrix<double, 8, 11> rows;  // the Hessian's columns expanded
   rows << -h.leftCols<3>(), h.col(3), h.leftCols<3>() - h.middleCols<3>(4), h.col(7), h.middleCols<3>(4);
   HingeTerms out;
-  out.gradient << -g.head<3>(), g[3], g.head<3>() - g.segment<3>(4), g[7], g.segment<3>(4);
+  out.gradient = by_nodes(g);
   out.hessian << -rows.topRows<3>(), rows.row(3), rows.topRows<3>() - rows.middleRows<3>(4), rows.row(7),
       rows.middleRows<3>(4);
   return out;
@@ -182,25 +199,58 @@ Energy elastic_energy(const Rod& rod, const State& state) {
   return energy;
 }
 
-HingeTerms hinge_terms(const Rod& rod, const State& state, std::size_t node) {
+HingeTerms hinge_terms(const Rod& rod, const State& state, std::size_t node, const double* stress) {
   const Bend b = bend_at(rod, state, node);
   const Vec3 cross = b.e.cross(b.f);
   const double over = 1 / rod.hinge_length[node];
+  const auto next = [&](double own) { return stress == nullptr ? own : *stress++; };
   Vec8 gradient = Vec8::Zero();
   Mat8 hessian = Mat8::Zero();
   for (const Reading& r : readings(rod.bending)) {
-    const double share = r.weight * over;
-    add_bending(b, cross, r, share * rod.stiffness.soft, share * rod.stiffness.hard, gradient, hessian);
+    const double soft = r.weight * over * rod.stiffness.soft, hard = r.weight * over * rod.stiffness.hard;
+    const auto [about_m2, about_m1] = bending(b, cross, r);
+    add_measure(about_m2, soft, gradient, hessian);
+    add_measure(about_m1, hard, gradient, hessian);
+    const double soft_moment = next(soft * about_m2.strain), hard_moment = next(hard * about_m1.strain);
+    add_curving(b, cross, r, soft_moment, hard_moment, hessian);
   }
-  add_twisting(b, cross, over * rod.stiffness.twist, gradient, hessian);
+  const Measure twist = twisting(b, cross);
+  const double stiffness = over * rod.stiffness.twist;
+  add_measure(twist, stiffness, gradient, hessian);
+  add_twisted_turning(b, cross, next(stiffness * twist.strain), hessian);
   return by_nodes(gradient, hessian);
 }
 
-EdgeTerms edge_terms(const Rod& rod, const State& state, std::size_t edge) {
+Measures measures(const Rod& rod, const State& state, std::size_t node) {
+  const Bend b = bend_at(rod, state, node);
+  const Vec3 cross = b.e.cross(b.f);
+  const double over = 1 / rod.hinge_length[node];
+  Measures out;
+  const auto add = [&](const Measure& m, double stiffness) {
+    const auto k = static_cast<std::size_t>(out.count++);
+    out.strain[k] = m.strain;
+    out.stiffness[k] = stiffness;
+    out.slope[k] = by_nodes(m.slope);
+  };
+  for (const Reading& r : readings(rod.bending)) {
+    const auto [about_m2, about_m1] = bending(b, cross, r);
+    add(about_m2, r.weight * over * rod.stiffness.soft);
+    add(about_m1, r.weight * over * rod.stiffness.hard);
+  }
+  add(twisting(b, cross), over * rod.stiffness.twist);
+  return out;
+}
+
+double tension(const Rod& rod, const State& state, std::size_t edge) {
+  return rod.stiffness.stretch * ((state.x[edge + 1] - state.x[edge]).norm() / rod.rest_length[edge] - 1);
+}
+
+EdgeTerms edge_terms(const Rod& rod, const State& state, std::size_t edge, double turned) {
   const Vec3 e = state.x[edge + 1] - state.x[edge];
-  const double length = e.norm(), l = rod.rest_length[edge], force = rod.stiffness.stretch * (length / l - 1);
+  const double length = e.norm(), l = rod.rest_length[edge];
   const Mat3 along = e * e.transpose() / (length * length);
-  return {force / length * e, rod.stiffness.stretch / l * along + force / length * (Mat3::Identity() - along)};
+  return {tension(rod, state, edge) / length * e,
+          rod.stiffness.stretch / l * along + turned / length * (Mat3::Identity() - along)};
 }
 
 std::array<std::size_t, 11> hinge_coordinates(const Rod& rod, std::size_t node) {

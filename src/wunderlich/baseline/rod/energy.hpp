@@ -31,14 +31,30 @@ struct HingeTerms {
   Vec11 gradient;
   Mat11 hessian;
 };
-HingeTerms hinge_terms(const Rod& rod, const State& state, std::size_t node);
 
-/// Of stretching an edge, by the vector from its first node to its second.
+/// What bends and twists at a node: its energy is the sum of stiffness strain^2/2 of these, its forces the sum of
+/// stress slope with stress = stiffness strain.
+struct Measures {
+  int count = 0;
+  std::array<double, 5> strain{}, stiffness{};
+  std::array<Vec11, 5> slope;
+};
+Measures measures(const Rod& rod, const State& state, std::size_t node);
+
+/// `stress`, one a measure: those that the Hessian has turn with the rod, where a method knows better than what strains
+/// say; null: what they say.
+HingeTerms hinge_terms(const Rod& rod, const State& state, std::size_t node, const double* stress = nullptr);
+
+/// What stretches an edge [N].
+double tension(const Rod& rod, const State& state, std::size_t edge);
+
+/// Of stretching an edge, by the vector from its first node to its second. `turned` [N] is the tension that the Hessian
+/// has turn with the edge: its own, or what a method expects it to be.
 struct EdgeTerms {
   Vec3 gradient;
   Mat3 hessian;
 };
-EdgeTerms edge_terms(const Rod& rod, const State& state, std::size_t edge);
+EdgeTerms edge_terms(const Rod& rod, const State& state, std::size_t edge, double turned);
 
 /// The coordinates around a node, in the order of its terms. In a loop those of node 0 stand for the last node's.
 std::array<std::size_t, 11> hinge_coordinates(const Rod& rod, std::size_t node);

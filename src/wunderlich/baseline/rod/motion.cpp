@@ -5,30 +5,22 @@ namespace wunderlich::baseline::rod {
 namespace {
 
 /// A force and torque at a node, on the edge that follows (at the end of an open rod the last).
-void add_load(const Rod& rod, const State& state, const constraint::Load& load, double time, Objective& out) {
-  constraint::LoadKey key = constraint::load_at(load, time);
+void add_load(const Rod& rod, const constraint::Load& load, double time, Objective& out) {
+  const constraint::LoadKey key = constraint::load_at(load, time);
   const std::size_t node = static_cast<std::size_t>(load.node), edge = std::min(node, rod.edges() - 1);
-  const Section s = section(state, edge);
-  if (load.frame == constraint::LoadFrame::material) {
-    Mat3 frame;
-    frame << s.m1, s.m2, s.m3;
-    key.force = frame * key.force;
-    key.torque = frame * key.torque;
-  }
-  out.force[node] += key.force;
-  out.moment[edge] += key.torque.dot(s.m3);
-  const Vec3 couple = key.torque.cross(s.m3) / (state.x[edge + 1] - state.x[edge]).norm();
-  out.force[edge + 1] += couple;
-  out.force[edge] -= couple;
+  const bool turns = load.frame == constraint::LoadFrame::material && !key.force.isZero();
+  if (!turns) out.force[node] += key.force;
+  if (turns || !key.torque.isZero())
+    out.followers.push_back(
+        {node, edge, load.frame == constraint::LoadFrame::material, turns ? key.force : Vec3::Zero(), key.torque});
 }
 
 /// Loads and solids at `time`; no ties.
-void place(const Rod& rod, const constraint::Surroundings& surroundings, const State& state, double time,
-           Objective& out) {
+void place(const Rod& rod, const constraint::Surroundings& surroundings, double time, Objective& out) {
   out.force.resize(rod.nodes());
   for (std::size_t i = 0; i < rod.nodes(); ++i) out.force[i] = rod.node_mass[i] * surroundings.gravity;
-  out.moment.assign(rod.edges(), 0.0);
-  for (const constraint::Load& load : surroundings.loads) add_load(rod, state, load, time, out);
+  out.followers.clear();
+  for (const constraint::Load& load : surroundings.loads) add_load(rod, load, time, out);
   out.node_tie.clear();
   out.solids = solids_at(rod, surroundings, time);
 }
@@ -55,13 +47,17 @@ void tie(const Rod& rod, const Damping& damping, double h, const State& state, O
   }
 }
 
+Report solve(const Rod& rod, const Options& options, State& state, Workspace& work) {
+  return work.objective.has_potential() ? minimise(rod, options, state, work) : balance(rod, options, state, work);
+}
+
 }  // namespace
 
 Report equilibrium(const Rod& rod, const constraint::Surroundings& surroundings, double time, const Options& options,
                    State& state, Workspace& work) {
-  place(rod, surroundings, state, time, work.objective);
+  place(rod, surroundings, time, work.objective);
   hold(rod, surroundings.supports, state, time, true, work.unknowns);
-  const Report report = minimise(rod, options, state, work);
+  const Report report = solve(rod, options, state, work);
   if (report.converged()) state.time = time;
   return report;
 }
@@ -69,13 +65,13 @@ Report equilibrium(const Rod& rod, const constraint::Surroundings& surroundings,
 Report step(const Rod& rod, const constraint::Surroundings& surroundings, const Damping& damping, double time,
             const Options& options, State& state, Workspace& work) {
   const double h = time - state.time;
-  place(rod, surroundings, state, time, work.objective);
+  place(rod, surroundings, time, work.objective);
   tie(rod, damping, h, state, work.objective);
   hold(rod, surroundings.supports, state, time, false, work.unknowns);
   State next = state;
   Options moving = options;
   moving.leave_saddles = false;
-  const Report report = minimise(rod, moving, next, work);
+  const Report report = solve(rod, moving, next, work);
   if (!report.converged()) return report;
   for (std::size_t i = 0; i < rod.nodes(); ++i) next.v[i] = (next.x[i] - state.x[i]) / h;
   for (std::size_t j = 0; j < rod.edges(); ++j) next.theta_dot[j] = (next.theta[j] - state.theta[j]) / h;

@@ -1,12 +1,12 @@
 /// A rod at rest and in motion: equilibria along the motion of its supports, and implicit Euler steps.
 #pragma once
 
-#include "wunderlich/baseline/rod/minimise.hpp"
+#include "wunderlich/baseline/rod/newton.hpp"
 
 namespace wunderlich::baseline::rod {
 
-/// Equilibrium at `time` (a load parameter) from one at `state.time`. The state changes only if it converges.
-/// Loads that turn with the section, and torques across the tangent, are taken where the state is before.
+/// Equilibrium at `time` (a load parameter) from one at `state.time`: a minimum of the energy, or under loads that have
+/// no potential a balance of forces. The state changes only if it converges.
 Report equilibrium(const Rod& rod, const constraint::Surroundings& surroundings, double time, const Options& options,
                    State& state, Workspace& work);
 
@@ -15,7 +15,7 @@ struct Damping {
   double tangent = 0, normal = 0;
 };
 
-/// One step of implicit Euler to `time`: a minimisation in which masses, and inertia of turning about the tangent, tie
+/// One step of implicit Euler to `time`: an equilibrium in which masses, and inertia of turning about the tangent, tie
 /// the rod to where it was going.   @eq Bergou2010, Martin2011
 Report step(const Rod& rod, const constraint::Surroundings& surroundings, const Damping& damping, double time,
             const Options& options, State& state, Workspace& work);
