@@ -50,7 +50,7 @@ void bm_step(benchmark::State& bench, bool conforming, int across, int along, do
   const double density = h * h / (kStep * std::pow(width, 4));
   const int turning = 1200;
   const Setup setup = fig8(density, turning * h);
-  const shell::Resolution resolution{along, across, shell::Diagonals::alternate};
+  const shell::Resolution resolution{along, across};
   const shell::Shell model = conforming ? baseline::shell_conforming::make_shell(setup.strip, resolution)
                                         : baseline::shell_nonconforming::make_shell(setup.strip, resolution);
   shell::State state = shell::straight_state(model, setup.surroundings, 1e-4);

@@ -8,7 +8,7 @@
 namespace wunderlich::baseline::shell {
 
 Shell make(Kind kind, const geometry::RibbonSpec& strip, int along, int across) {
-  const Resolution resolution{along, across, Diagonals::alternate};
+  const Resolution resolution{along, across};
   return kind == Kind::conforming ? shell_conforming::make_shell(strip, resolution)
                                   : shell_nonconforming::make_shell(strip, resolution);
 }

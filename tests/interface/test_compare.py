@@ -27,6 +27,9 @@ class Compare(ProgramTest):
             self.assertAlmostEqual(float(rows[model]["normalized"]) / ribbon, 1, delta=tolerance, msg=model)
         self.assertLess(abs(float(rows["ribbon"]["area_error"])), 1e-10)
         self.assertLess(abs(float(rows["ribbon"]["diagonal_strain"])), 1e-10)
+        for model in MODELS:  # a small net force, but some; lengths of the shells are good to 1e-3
+            self.assertGreater(float(rows[model]["imbalance"]), 0, msg=model)
+            self.assertLess(float(rows[model]["imbalance"]), 0.05, msg=model)
         data = json.loads((self.folder / "there/comparison.json").read_text())
         self.assertEqual([model["model"] for model in data["models"]], MODELS)
         page = (self.folder / "there/report.html").read_text()
@@ -46,6 +49,7 @@ class Compare(ProgramTest):
             self.assertAlmostEqual(float(row["moved_seconds"]), 0.02, msg=model)
             self.assertEqual(int(row["steps"]), 10, model)
             self.assertGreater(float(row["kinetic"]), 0, model)
+            self.assertEqual(row["imbalance"], "", model)  # it does not say that it is at rest
 
     def test_a_model_that_cannot_do_the_scene_says_so(self):
         result = self.expect(3, "compare", "ring", "--models", "ribbon,shell-conforming", "--out", "there")
@@ -83,6 +87,16 @@ class Compare(ProgramTest):
         self.assertAlmostEqual(ratio, 1, delta=0.08)  # its free length is shorter by an edge in twenty
         first, last = self.ends("rod")
         self.assertAlmostEqual(last[0] - first[0], 0.6, delta=1e-6)
+
+    def test_the_rod_bends_under_a_wrench_that_turns_with_its_end(self):
+        # The ribbon's energy in closed form, kappa^2 (1 + eta^2)^2/2 with kappa = 4, eta = 3/4; the rod's by Kirchhoff's equations (test_baseline).
+        self.expect(0, "compare", "helix", "--models", "ribbon,rod", "--out", "there", "--quiet")
+        rows = self.table("there")
+        self.assertAlmostEqual(float(rows["ribbon"]["normalized"]), 0.5 * 16 * (1 + 9 / 16) ** 2, delta=0.01)
+        self.assertAlmostEqual(float(rows["rod"]["normalized"]), 53.6, delta=0.6)
+        self.assertLess(float(rows["rod"]["iterations_mean"]), 15)
+        for row in rows.values():
+            self.assertLess(float(row["imbalance"]), 1e-6)
 
     def test_the_rod_on_pins_and_with_edges_of_its_own(self):
         pinned = ("ribbon: {length: 1, width: 0.1, segments: 12}\n"

@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <utility>
 
+#include "scene/placed.hpp"
 #include "solver/paths.hpp"
 #include "support/clearance.hpp"
 #include "support/crossings.hpp"
 #include "wunderlich/scene/read.hpp"
-#include "wunderlich/scene/recording.hpp"
 #include "wunderlich/scene/run.hpp"
 
 namespace wunderlich::scene {
@@ -38,33 +38,6 @@ double distance_to(const constraint::Obstacle& obstacle, double time, const solv
     }
   }
   return least;
-}
-
-/// The strips of one record.
-struct Placed {
-  std::vector<geometry::Ribbon> ribbons,
-      whole;  ///< as they are held, and as they will be: a loop before it closes is cut
-  std::vector<geometry::Chain> chains;
-  std::vector<geometry::Kinematics> kinematics;
-  std::vector<solver::StripPlace> places;
-};
-
-void place(const Scene& scene, const Record& record, Placed& out) {
-  const std::vector<const Scene*> strips = strips_of(scene);
-  out = {};
-  out.ribbons.reserve(strips.size());
-  out.whole.reserve(strips.size());
-  out.chains.reserve(strips.size());
-  out.kinematics.resize(strips.size());
-  for (std::size_t i = 0; i < strips.size(); ++i) {
-    const geometry::State& state = record.states[i];
-    const bool path = scene.solver.method == Method::equilibrium;
-    out.ribbons.push_back(path ? path_ribbon(*strips[i], state) : motion_ribbon(*strips[i], state.time));
-    out.chains.push_back(geometry::chain_of(out.ribbons[i], state));
-    geometry::forward_kinematics(out.ribbons[i], out.chains[i], out.kinematics[i]);
-    out.whole.push_back(geometry::make_ribbon(strips[i]->ribbon));
-    out.places.push_back({out.whole[i], out.chains[i], out.kinematics[i]});
-  }
 }
 
 /// Runs a scene with every step recorded; in short up to the time given, under sanitizers to a tenth of it.

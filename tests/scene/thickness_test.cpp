@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "scene/placed.hpp"
 #include "solver/paths.hpp"
 #include "support/clearance.hpp"
 #include "wunderlich/scene/read.hpp"
-#include "wunderlich/scene/recording.hpp"
 #include "wunderlich/scene/run.hpp"
 
 namespace wunderlich::scene {
@@ -47,20 +47,9 @@ output: {frames: 2000}
 /// Of all strips in one record, or of the last one with itself [m].
 double clearance_at(const Scene& scene, const Record& record, bool only_last) {
   const double apart = 3 * (scene.surroundings.contact.distance + scene.surroundings.contact.thickness);
-  const bool path = scene.solver.method == Method::equilibrium;
-  const std::vector<const Scene*> scenes = strips_of(scene);
-  std::vector<geometry::Ribbon> ribbons;
-  std::vector<geometry::Chain> chains;
-  std::vector<geometry::Kinematics> kinematics(scenes.size());
-  std::vector<solver::StripPlace> strips;
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const geometry::State& state = record.states[i];
-    ribbons.push_back(path ? path_ribbon(*scenes[i], state) : motion_ribbon(*scenes[i], state.time));
-    chains.push_back(geometry::chain_of(ribbons[i], state));
-    geometry::forward_kinematics(ribbons[i], chains[i], kinematics[i]);
-  }
-  for (std::size_t i = 0; i < scenes.size(); ++i) strips.push_back({ribbons[i], chains[i], kinematics[i]});
-  return only_last ? testing::clearance({&strips.back(), 1}, apart) : testing::clearance(strips, apart);
+  Placed strips;
+  place(scene, record, strips);
+  return only_last ? testing::clearance({&strips.places.back(), 1}, apart) : testing::clearance(strips.places, apart);
 }
 
 /// What the run says of itself is a bound from below of all these records, and no more than a third of the distance at

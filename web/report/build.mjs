@@ -28,7 +28,7 @@ async function bundle(entry) {
 
 // A replacement given as a function: `$` in the code must not be read as a pattern.
 const place = (page, mark, text) => {
-  if (!page.includes(mark)) throw new Error(`page.html has no ${mark}`);
+  if (!page.includes(mark)) throw new Error(`the page has no ${mark}`);
   return page.replace(mark, () => text);
 };
 
@@ -36,6 +36,7 @@ const licences = `<!-- Contains three.js (MIT, three.js authors) and uPlot (MIT,
 
 async function build(html, script) {
   let page = await readFile(path.join(here, 'src', html), 'utf8');
+  page = place(page, '<!-- head -->\n', await readFile(path.join(here, 'src/head.html'), 'utf8'));
   page = place(page, '/* style */', await bundle('style.css'));
   page = place(page, '/* script */', await bundle(script));
   page = page.replace('<html', () => `${licences}<html`);

@@ -1,6 +1,7 @@
 /// Several models run on one scene, as plain numbers and pictures: what `wunderlich compare` writes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,9 @@ struct ModelResult {
   int constraints = 0;             ///< scalar equations that hold them together, supports left out
   Energies energy;
   IsometryErrors isometry;
+  /// Of a model that says it is at rest: largest net force on one of its points, over D/w; of the ribbon, largest
+  /// moment left in a joint, over D.
+  std::optional<double> imbalance;
   double length_error = 0;  ///< shells: largest relative error of a length that is a constraint, at the end
   double missed_steps = 0;  ///< shells: share of the steps whose lengths stayed off by more than the tolerance
   long steps = 0;

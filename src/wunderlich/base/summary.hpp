@@ -85,6 +85,7 @@ struct Summary {
   std::optional<double> closure_error;  ///< loops: relative to the length
   std::vector<Reaction> ends;           ///< start, end; empty for loops
   std::optional<Stability> stability;   ///< equilibria
+  std::optional<double> imbalance;      ///< equilibria: largest moment left in a joint [N m]; for comparisons
   Topology topology;
   std::vector<double> kappa_zeros;  ///< u / length
   std::vector<std::string> warnings;

@@ -23,42 +23,46 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t point_budget = 1u << 19;  // moving points of one model in the page
 
+using Figure = std::optional<double>;  // empty where it says nothing of a model
+
 struct Column {
   const char* name;
-  double (*value)(const ModelResult&);
+  Figure (*value)(const ModelResult&);
 };
 
 /// Time a simulated second; a path of equilibria has none.
-double per_second(const ModelResult& m) { return m.moved_seconds > 0 ? m.wall_seconds / m.moved_seconds : 0; }
+Figure per_second(const ModelResult& m) { return m.moved_seconds > 0 ? m.wall_seconds / m.moved_seconds : 0; }
 
-constexpr std::array<Column, 18> columns{{
-    {"unknowns", [](const ModelResult& m) { return static_cast<double>(m.unknowns); }},
-    {"constraints", [](const ModelResult& m) { return static_cast<double>(m.constraints); }},
-    {"elastic", [](const ModelResult& m) { return m.energy.elastic; }},
-    {"normalized", [](const ModelResult& m) { return m.energy.normalized; }},
-    {"kinetic", [](const ModelResult& m) { return m.energy.kinetic; }},
-    {"gravity", [](const ModelResult& m) { return m.energy.gravity; }},
-    {"area_error", [](const ModelResult& m) { return m.isometry.area; }},
-    {"diagonal_strain", [](const ModelResult& m) { return m.isometry.diagonal; }},
-    {"rim_stretch", [](const ModelResult& m) { return m.isometry.rim; }},
-    {"length_error", [](const ModelResult& m) { return m.length_error; }},
-    {"missed_steps", [](const ModelResult& m) { return m.missed_steps; }},
-    {"steps", [](const ModelResult& m) { return static_cast<double>(m.steps); }},
-    {"iterations_mean", [](const ModelResult& m) { return m.iterations; }},
-    {"step_us_median", [](const ModelResult& m) { return m.step_us; }},
-    {"wall_seconds", [](const ModelResult& m) { return m.wall_seconds; }},
-    {"moved_seconds", [](const ModelResult& m) { return m.moved_seconds; }},
+constexpr std::array<Column, 19> columns{{
+    {"unknowns", [](const ModelResult& m) -> Figure { return static_cast<double>(m.unknowns); }},
+    {"constraints", [](const ModelResult& m) -> Figure { return static_cast<double>(m.constraints); }},
+    {"elastic", [](const ModelResult& m) -> Figure { return m.energy.elastic; }},
+    {"normalized", [](const ModelResult& m) -> Figure { return m.energy.normalized; }},
+    {"kinetic", [](const ModelResult& m) -> Figure { return m.energy.kinetic; }},
+    {"gravity", [](const ModelResult& m) -> Figure { return m.energy.gravity; }},
+    {"area_error", [](const ModelResult& m) -> Figure { return m.isometry.area; }},
+    {"diagonal_strain", [](const ModelResult& m) -> Figure { return m.isometry.diagonal; }},
+    {"rim_stretch", [](const ModelResult& m) -> Figure { return m.isometry.rim; }},
+    {"imbalance", [](const ModelResult& m) { return m.imbalance; }},
+    {"length_error", [](const ModelResult& m) -> Figure { return m.length_error; }},
+    {"missed_steps", [](const ModelResult& m) -> Figure { return m.missed_steps; }},
+    {"steps", [](const ModelResult& m) -> Figure { return static_cast<double>(m.steps); }},
+    {"iterations_mean", [](const ModelResult& m) -> Figure { return m.iterations; }},
+    {"step_us_median", [](const ModelResult& m) -> Figure { return m.step_us; }},
+    {"wall_seconds", [](const ModelResult& m) -> Figure { return m.wall_seconds; }},
+    {"moved_seconds", [](const ModelResult& m) -> Figure { return m.moved_seconds; }},
     {"wall_per_second", per_second},
-    {"frames", [](const ModelResult& m) { return static_cast<double>(m.frames.size()); }},
+    {"frames", [](const ModelResult& m) -> Figure { return static_cast<double>(m.frames.size()); }},
 }};
 
-double finite(double value, const ModelResult& model, const char* name) {
-  if (!std::isfinite(value)) throw std::domain_error(fmt::format("{}: {} is not finite", model.model, name));
+/// What says something of a shape, or of steps, says nothing of a model that never moved.
+Figure figure(const ModelResult& model, const Column& column) {
+  if (model.steps == 0) return std::nullopt;
+  const Figure value = column.value(model);
+  if (value && !std::isfinite(*value))
+    throw std::domain_error(fmt::format("{}: {} is not finite", model.model, column.name));
   return value;
 }
-
-/// What says something of a shape, or of steps, says nothing of a model that never moved.
-bool has_figures(const ModelResult& model) { return model.steps > 0; }
 
 Json number_json(double value) {
   return value == std::floor(value) && std::abs(value) < 1e15 ? Json(static_cast<long>(value)) : Json(value);
@@ -67,8 +71,8 @@ Json number_json(double value) {
 Json model_json(const ModelResult& model) {
   Json out = {{"model", model.model}, {"method", model.method}, {"resolution", model.resolution}};
   for (const Column& column : columns) {
-    out[column.name] =
-        has_figures(model) ? number_json(finite(column.value(model), model, column.name)) : Json(nullptr);
+    const Figure value = figure(model, column);
+    out[column.name] = value ? number_json(*value) : Json(nullptr);
   }
   out["converged"] = model.converged;
   if (!model.failure.empty()) out["failure"] = model.failure;
@@ -124,7 +128,8 @@ std::string comparison_csv(const Comparison& comparison) {
   for (const ModelResult& model : comparison.models) {
     out += fmt::format("{},{},{},{}", model.model, model.method, model.resolution, model.converged ? 1 : 0);
     for (const Column& column : columns) {
-      out += has_figures(model) ? fmt::format(",{}", finite(column.value(model), model, column.name)) : ",";
+      const Figure value = figure(model, column);
+      out += value ? fmt::format(",{}", *value) : ",";
     }
     out += "\n";
   }

@@ -46,6 +46,7 @@ ModelResult run_ribbon(const Scene& scene, const Observer& observer) {
   result.failure = run.outcome == Outcome::interrupted ? "interrupted" : run.summary.failure;
   count_ribbon(scene, result);
   result.energy = run.summary.energy;
+  if (run.summary.imbalance) result.imbalance = *run.summary.imbalance / scene.ribbon.bending_stiffness;
   const geometry::State& last = run.progress.records.back().states.front();
   const bool path = scene.solver.method == Method::equilibrium;
   const geometry::Ribbon ribbon = path ? path_ribbon(scene, last) : motion_ribbon(scene, last.time);
@@ -120,65 +121,6 @@ Comparison compare(const Scene& scene, const std::vector<Model>& models, const O
     if (result.failure == "interrupted") break;
   }
   return comparison;
-}
-
-ModelLog::ModelLog(const Scene& scene, Model model, double until, const Observer& observer)
-    : scene_(scene), observer_(observer), until_(until) {
-  result_.model = model_name(model);
-}
-
-bool ModelLog::step(double time, double seconds, int iterations) {
-  step_us_.push_back(1e6 * seconds);
-  result_.wall_seconds += seconds;
-  ++result_.steps;
-  iterations_ += iterations;
-  const bool goes_on = observer_({"", std::min(1.0, time / until_), static_cast<int>(iterations_)});
-  if (!goes_on) result_.failure = "interrupted";
-  return goes_on;
-}
-
-void ModelLog::phase(const std::string& name, double seconds) {
-  for (auto& [known, sum] : result_.phases_us) {
-    if (known == name) {
-      sum += 1e6 * seconds;
-      return;
-    }
-  }
-  result_.phases_us.emplace_back(name, 1e6 * seconds);
-}
-
-bool ModelLog::wants_frame(double time) {
-  if (time < next_frame_) return false;
-  next_frame_ += until_ / std::max(1, scene_.output.frames - 1);
-  return true;
-}
-
-void ModelLog::frame(double time, Mesh surface) { result_.frames.push_back({time, {}, std::move(surface)}); }
-
-ModelResult ModelLog::finished() {
-  if (!step_us_.empty()) {
-    const auto middle = step_us_.begin() + static_cast<std::ptrdiff_t>(step_us_.size() / 2);
-    std::nth_element(step_us_.begin(), middle, step_us_.end());
-    result_.step_us = *middle;
-    result_.iterations = static_cast<double>(iterations_) / static_cast<double>(step_us_.size());
-    for (auto& [name, sum] : result_.phases_us) sum /= static_cast<double>(step_us_.size());
-  }
-  return std::move(result_);
-}
-
-constraint::Surroundings stretched(const constraint::Surroundings& surroundings, double factor) {
-  constraint::Surroundings out = surroundings;
-  for (constraint::Support& support : out.supports) {
-    for (constraint::PoseKey& key : support.motion.keys) key.time *= factor;
-    support.release *= factor;
-  }
-  for (constraint::Load& load : out.loads) {
-    for (constraint::LoadKey& key : load.keys) key.time *= factor;
-  }
-  for (constraint::Obstacle& obstacle : out.obstacles) {
-    for (constraint::PoseKey& key : obstacle.motion.keys) key.time *= factor;
-  }
-  return out;
 }
 
 }  // namespace wunderlich::scene

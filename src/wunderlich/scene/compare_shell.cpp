@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "wunderlich/baseline/shell/balance.hpp"
 #include "wunderlich/baseline/shell/bending.hpp"
 #include "wunderlich/baseline/shell/measure.hpp"
 #include "wunderlich/baseline/shell/step.hpp"
@@ -12,7 +13,6 @@
 #include "wunderlich/geometry/chain.hpp"
 #include "wunderlich/geometry/isometry.hpp"
 #include "wunderlich/scene/compare_models.hpp"
-#include "wunderlich/scene/recording.hpp"
 #include "wunderlich/scene/start.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
 
@@ -27,14 +27,13 @@ constexpr double kDrift = 2e-3;  // over the length: what points move by, in a q
 constexpr double kCreep = 1e-4;  // the same in the implicit metric, which has no jerks
 constexpr double kJerk = 1e-6;   // of the elastic energy: what may move at rest
 constexpr double kMaxMissed = 0.5, kMaxOff = 2;  // of the steps; of the tolerance
-constexpr int kMaxHalvings = 6;
-constexpr int kRounds = 50;  // of fast projection in a step; where it locks, more do not help
+constexpr int kRounds = 50;                      // of fast projection in a step; where it locks, more do not help
 
 bool conforms(Model model) { return model == Model::shell_conforming; }
 
 shell::Shell shell_of(const Scene& scene, Model model) {
   const CompareOptions::Shell& size = conforms(model) ? scene.compare.conforming : scene.compare.nonconforming;
-  const shell::Resolution resolution{size.along, size.across, shell::Diagonals::alternate};
+  const shell::Resolution resolution{size.along, size.across};
   return conforms(model) ? baseline::shell_conforming::make_shell(scene.ribbon, resolution)
                          : baseline::shell_nonconforming::make_shell(scene.ribbon, resolution);
 }
@@ -81,11 +80,9 @@ struct Run {
         factor(path ? s.compare.load_time : 1),
         surroundings(path ? stretched(s.surroundings, factor) : s.surroundings),
         loaded(factor * s.solver.duration),
-        until(loaded + (path ? s.compare.settle_time : 0)),
         time_step(conforms(model) ? s.compare.conforming.time_step : s.compare.nonconforming.time_step),
-        failure(shell::unsupported(s.ribbon, s.surroundings)),
         shell(shell_of(s, model)),
-        log(s, model, until, observer) {
+        log(s, model, loaded + (path ? s.compare.settle_time : 0), factor, observer) {
     options.metric = s.compare.implicit_metric ? shell::Metric::implicit : shell::Metric::mass;
     options.length_tolerance = s.compare.length_tolerance;
     options.max_iterations = kRounds;
@@ -97,8 +94,9 @@ struct Run {
   bool path;
   double factor;
   constraint::Surroundings surroundings;
-  double loaded, until, time_step;  // when the loads have come, when it must rest [s]
-  std::string failure;
+  double loaded, time_step;           // when the loads have come [s]
+  constraint::Surroundings approach;  // of a path, to its start
+  bool approaching = false;
   shell::Shell shell;
   ModelLog log;
   shell::Options options;
@@ -110,11 +108,12 @@ struct Run {
   double next_look = 0;        // [s]
   bool rests = false;
 
-  void start() {
+  /// Where the ribbon starts. Why not, else empty.
+  std::string start() {
     const geometry::Ribbon ribbon = path ? geometry::make_ribbon(scene.ribbon) : motion_ribbon(scene, 0);
     const Start start = ribbon_start(scene, ribbon);
-    failure = start.failure;
-    if (!failure.empty()) return;
+    if (!start.failure.empty()) return start.failure;
+    approach = stretched(approach_to(scene.surroundings, own_poses(start.shape)), factor);
     state.x.setZero(shell.point_count(), 3);
     state.v.setZero(shell.point_count(), 3);
     Vec3 center = Vec3::Zero();
@@ -130,29 +129,34 @@ struct Run {
       const Vec3 arm = state.x.row(p).transpose() - center;
       state.v.row(p) = (scene.initial.velocity + scene.initial.spin.cross(arm)).transpose();
     }
+    return {};
   }
 
-  bool advance(double t1, int halvings, int& iterations) {
-    const double t0 = state.time;
-    const shell::StepReport report = shell::step(shell, surroundings, options, t1, state, work);
-    iterations += report.iterations;
+  /// Where the strip has its supports at the start.
+  std::vector<Pose> own_poses(const geometry::State& shape) const {
+    std::vector<Pose> poses;
+    for (const constraint::Support& support : scene.surroundings.supports) {
+      const auto segment = static_cast<std::size_t>(support.segment >= 0 ? support.segment : support.node);
+      poses.push_back(
+          {shape.r[static_cast<std::size_t>(support.node)], shape.q[std::min(segment, shape.q.size() - 1)]});
+    }
+    return poses;
+  }
+
+  Tried step_to(double t) {
+    const shell::StepReport report = shell::step(shell, approaching ? approach : surroundings, options, t, state, work);
     ++tried;
     missed += !report.converged;
     worst = std::max(worst, report.max_length_error);
     log.phase("t_sol", report.sol_seconds);
     log.phase("t_len", report.length_seconds);
     log.phase("t_bd", report.boundary_seconds);
-    if (report.accepted) return true;
-    if (halvings == kMaxHalvings) {
-      failure = fmt::format("{} (at {:.3g} s)", report.failure, t1);
-      return false;
-    }
-    return advance(0.5 * (t0 + t1), halvings + 1, iterations) && advance(t1, halvings + 1, iterations);
+    return {report.iterations, report.accepted ? "" : report.failure};
   }
 
   /// Has nothing gone anywhere since the last look? In the metric of masses speeds would not tell: lengths that may be
   /// off by the tolerance are put right by jerks, for ever.
-  bool is_resting() {
+  bool is_over() {
     if (!path || state.time < loaded || state.time < next_look) return false;
     const bool implicit = options.metric == shell::Metric::implicit;
     const double drift = (implicit ? kCreep : kDrift) * scene.ribbon.length;
@@ -161,31 +165,28 @@ struct Run {
     const bool still = slow && before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < drift;
     before = state.x;
     next_look = state.time + 0.25 * factor;
-    return still;
+    rests = still;
+    return rests;
   }
 
-  bool go() {
-    const long steps = std::lround(std::ceil(until / time_step - 1e-9));
-    log.frame(0, shell::surface_mesh(shell, state.x));
-    for (long k = 1; k <= steps; ++k) {
-      const double t = k == steps ? until : static_cast<double>(k) * time_step;
-      const Stopwatch watch;
-      int iterations = 0;
-      if (!advance(t, 0, iterations)) return false;
-      if (!log.step(t, watch.seconds(), iterations)) return false;
-      rests = is_resting();
-      const bool over = k == steps || rests;
-      if (over || log.wants_frame(t)) log.frame(t / factor, shell::surface_mesh(shell, state.x));
-      if (over) break;
-    }
-    if (path && !rests) failure = "not at rest after compare.settle_time";
-    return failure.empty();
+  Mesh surface() const { return shell::surface_mesh(shell, state.x); }
+
+  void go() {
+    const Stepped stepped{[this](double t) { return step_to(t); }, [this] { return is_over(); },
+                          [this] { return surface(); }};
+    log.frame(0, surface());
+    approaching = path && is_away(approach, scene.ribbon.length);
+    if (approaching && !log.approach(stepped, factor, steps_of(factor, time_step))) return;
+    if (approaching) state.time = 0;
+    approaching = false;
+    if (log.run(stepped, time_step) && path && !rests) log.result().failure = "not at rest after compare.settle_time";
   }
 
   double missed_share() const { return tried > 0 ? static_cast<double>(missed) / static_cast<double>(tried) : 0; }
 
   /// A state whose lengths are off is none of an inextensible strip.
   void judge_lengths() {
+    std::string& failure = log.result().failure;
     if (!failure.empty()) return;
     const double off = shell::length_error(shell, state.x);
     if (off > kMaxOff * options.length_tolerance)
@@ -205,10 +206,10 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   result.resolution = fmt::format("{} x {} vertices", size.along, size.across);
   result.unknowns = shell::degrees_of_freedom(run.shell);
   result.constraints = shell::constraint_count(run.shell);
-  if (run.failure.empty()) run.start();
-  if (run.failure.empty()) run.go();
+  result.failure = shell::unsupported(scene.ribbon, scene.surroundings);
+  if (result.failure.empty()) result.failure = run.start();
+  if (result.failure.empty()) run.go();
   run.judge_lengths();
-  if (result.failure.empty()) result.failure = run.failure;
   result.converged = result.failure.empty();
   if (run.missed > 0) {
     result.notes.push_back(
@@ -219,16 +220,16 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
     result.notes.push_back("at rest in the metric of masses, which is no equilibrium and depends on the time step");
   if (result.frames.empty()) {
     run.state = shell::straight_state(run.shell, run.surroundings);
-    run.log.frame(0, shell::surface_mesh(run.shell, run.state.x));
+    run.log.frame(0, run.surface());
   }
   result.energy.elastic = shell::bending_energy(run.shell, run.state.x);
-  result.energy.normalized =
-      result.energy.elastic * scene.ribbon.length / (scene.ribbon.bending_stiffness * scene.ribbon.width);
   result.energy.kinetic = shell::kinetic_energy(run.shell, run.state.v);
   result.length_error = shell::length_error(run.shell, run.state.x);
   result.missed_steps = run.missed_share();
   result.isometry = geometry::isometry_errors(grid_of(run.shell, run.state.x));
   result.moved_seconds = run.state.time;
+  if (run.path && run.rests && scene.surroundings.obstacles.empty())
+    result.imbalance = shell::net_force(run.shell, run.surroundings, run.state);
   return run.log.finished();
 }
 

@@ -1,25 +1,16 @@
 /// What every kind of run keeps while it goes: records, times of steps, sums by phase. Internal to scene/.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "wunderlich/base/stopwatch.hpp"
 #include "wunderlich/base/summary.hpp"
 #include "wunderlich/geometry/ribbon.hpp"
 #include "wunderlich/scene/run.hpp"
 #include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 struct Recording {
   std::vector<Record> records;

@@ -75,6 +75,7 @@ Summary summarise(const Scene& scene, const PathProblem& path, const PathState& 
                                " negative modes");
   }
   add_ends(path, state, work, summary);
+  if (summary.converged) summary.imbalance = solver::joint_imbalance(path, state, work);
   if (!path.surroundings.obstacles.empty() || path.surroundings.contact.self) {
     summary.contact = ContactSummary{state.touching, std::max(0.0, -state.nearest), state.nearest};
   }

@@ -265,20 +265,30 @@ double elastic_energy(const Ribbon& ribbon, const energy::Model& model, const Ch
   return objective(ribbon, problem, chain, k, k).elastic;
 }
 
-EndReactions end_reactions(const PathProblem& path, const PathState& state, NewtonWorkspace& work) {
+namespace {
+
+/// The problem where the path stands, linearised there with its multipliers; left in the workspace. False if it is
+/// singular, or if there is none yet.
+bool linearise_at(const PathProblem& path, const PathState& state, ChainProblem& problem, NewtonWorkspace& work) {
   const Ribbon& ribbon = ribbon_of(path, state);
   Chain chain = state.chain;
   PathState settled = state;
   const bool over = state.phase == Phase::settle || state.phase == Phase::done;
   settled.phase = over ? Phase::settle : state.phase;
-  ChainProblem problem;
   problem_at(path, settled, over ? path.options.duration : state.t, chain, problem);
-  EndReactions reactions;
-  if (state.multipliers.size() != row_count(problem)) return reactions;
+  if (state.multipliers.size() != row_count(problem)) return false;
   geometry::forward_kinematics(ribbon, chain, work.kinematics);
   find_touching(ribbon, problem.touchable(), chain, work.kinematics, work.search, work.touching);
   linearise(ribbon, problem, chain, work.kinematics, state.multipliers, work.touching, work.system);
-  if (!math::chain_step(work.system, work.sweep, work.step)) return reactions;
+  return math::chain_step(work.system, work.sweep, work.step);
+}
+
+}  // namespace
+
+EndReactions end_reactions(const PathProblem& path, const PathState& state, NewtonWorkspace& work) {
+  ChainProblem problem;
+  EndReactions reactions;
+  if (!linearise_at(path, state, problem, work)) return reactions;
   // A held base answers with the gradient of everything beyond it; a held pose with minus its multipliers.
   if (base_is_held(path)) {
     reactions.force[0] = work.sweep.base_gradient.head<3>();
@@ -295,6 +305,23 @@ EndReactions end_reactions(const PathProblem& path, const PathState& state, Newt
     }
   }
   return reactions;
+}
+
+std::optional<double> joint_imbalance(const PathProblem& path, const PathState& state, NewtonWorkspace& work) {
+  ChainProblem problem;
+  if (!linearise_at(path, state, problem, work)) return std::nullopt;
+  const Ribbon& ribbon = ribbon_of(path, state);
+  double largest = 0;
+  for (std::size_t i = 0; i < work.sweep.gradient.size(); ++i) {
+    const Vec2& gradient = work.sweep.gradient[i];
+    const double fold = geometry::fold_length(ribbon, i);
+    largest = std::max({largest, fold > 0 ? std::abs(gradient[0]) / fold : 0, std::abs(gradient[1])});
+  }
+  for (int c = 0; c < 6; ++c) {
+    if (problem.base_fixed[static_cast<std::size_t>(c)]) continue;
+    largest = std::max(largest, std::abs(work.sweep.base_gradient[c]) * (c < 3 ? ribbon.width : 1));
+  }
+  return largest;
 }
 
 }  // namespace wunderlich::solver

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -100,5 +101,10 @@ struct EndReactions {
   std::array<Vec3, 2> torque{Vec3::Zero(), Vec3::Zero()};
 };
 EndReactions end_reactions(const PathProblem& problem, const PathState& state, NewtonWorkspace& work);
+
+/// What is out of balance where the path stands: the largest gradient of energy, loads and reactions by the turn of a
+/// joint, by the slope of its ruling, or by the pose of a free base (there of forces times the width) [N m]. Empty
+/// where the linearised problem is singular.
+std::optional<double> joint_imbalance(const PathProblem& problem, const PathState& state, NewtonWorkspace& work);
 
 }  // namespace wunderlich::solver

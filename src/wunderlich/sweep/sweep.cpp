@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <unordered_set>
 
 #include "wunderlich/base/error.hpp"
+#include "wunderlich/base/stopwatch.hpp"
 #include "wunderlich/io/file.hpp"
 #include "wunderlich/sweep/pool.hpp"
 #include "wunderlich/sweep/store.hpp"
@@ -15,15 +15,6 @@ namespace wunderlich::sweep {
 namespace fs = std::filesystem;
 
 namespace {
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 std::string log_name(const Shard& shard) {
   return shard.count == 1 ? "all" : fmt::format("shard-{}-of-{}", shard.index + 1, shard.count);

@@ -7,6 +7,7 @@ export interface ModelRun {
   // Those of a shape are null where the model never moved.
   normalized: number | null; elastic: number | null; kinetic: number | null; gravity: number | null;
   area_error: number | null; diagonal_strain: number | null; rim_stretch: number | null;
+  imbalance: number | null;  // of what says that it is at rest
   length_error: number | null; missed_steps: number | null;
   steps: number; step_us_median: number; wall_seconds: number; moved_seconds: number; wall_per_second: number;
   run: Run;

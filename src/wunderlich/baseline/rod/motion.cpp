@@ -1,5 +1,8 @@
 #include "wunderlich/baseline/rod/motion.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace wunderlich::baseline::rod {
 
 namespace {
@@ -78,6 +81,22 @@ Report step(const Rod& rod, const constraint::Surroundings& surroundings, const 
   next.time = time;
   state = next;
   return report;
+}
+
+double net_force(const Rod& rod, const constraint::Surroundings& surroundings, const State& state, Workspace& work) {
+  place(rod, surroundings, state.time, work.objective);
+  hold(rod, surroundings.supports, state, state.time, true, work.unknowns);
+  std::fill(work.unknowns.given.begin(), work.unknowns.given.end(), 0.0);
+  assemble(rod, work.objective, state, work.unknowns, work.system);
+  const auto on = [&](std::size_t coordinate) {
+    const int k = work.unknowns.number[coordinate];
+    return k < 0 ? 0.0 : work.system.gradient[static_cast<std::size_t>(k)];
+  };
+  double largest = 0;
+  for (std::size_t i = 0; i < rod.nodes(); ++i)
+    largest = std::max(largest, Vec3(on(4 * i), on(4 * i + 1), on(4 * i + 2)).norm());
+  for (std::size_t j = 0; j < rod.edges(); ++j) largest = std::max(largest, std::abs(on(4 * j + 3)) / rod.width);
+  return largest;
 }
 
 double kinetic_energy(const Rod& rod, const State& state) {

@@ -20,6 +20,10 @@ struct Damping {
 Report step(const Rod& rod, const constraint::Surroundings& surroundings, const Damping& damping, double time,
             const Options& options, State& state, Workspace& work);
 
+/// What is out of balance at a state at rest under the surroundings of its time: largest net force on a node, or moment
+/// on the turn of an edge over the width, of those that may move [N].
+double net_force(const Rod& rod, const constraint::Surroundings& surroundings, const State& state, Workspace& work);
+
 /// [J]
 double kinetic_energy(const Rod& rod, const State& state);
 double gravity_energy(const Rod& rod, const Vec3& gravity, const State& state);

@@ -11,6 +11,14 @@ Vec3 at(const Points& x, int row) { return x.row(row).transpose(); }
 
 }  // namespace
 
+void lump_masses(const std::vector<std::array<int, 3>>& points_of_triangles, Shell& shell) {
+  shell.mass.assign(shell.flat.size(), 0);
+  for (const auto& points : points_of_triangles) {
+    for (const int p : points)
+      shell.mass[static_cast<std::size_t>(p)] += shell.strip.area_density * shell.mesh.triangle_area() / 3;
+  }
+}
+
 int length_count(const Shell& shell) {
   std::size_t count = 0;
   for (const auto& set : shell.lengths) count += set.size();

@@ -20,7 +20,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 struct Resolution {
   int along = 36;  ///< n, vertices over the length
   int across = 4;  ///< m, vertices over the width
-  Diagonals diagonals = Diagonals::alternate;
 };
 
 /// The distance of two points is `rest` [m].
@@ -43,6 +42,9 @@ struct Shell {
 
   int point_count() const { return static_cast<int>(flat.size()); }
 };
+
+/// A third of each triangle's mass to the points that stand for its corners, or its edges.
+void lump_masses(const std::vector<std::array<int, 3>>& points_of_triangles, Shell& shell);
 
 int length_count(const Shell& shell);
 

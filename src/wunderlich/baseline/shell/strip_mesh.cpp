@@ -8,13 +8,13 @@ namespace wunderlich::baseline::shell {
 
 namespace {
 
-void add_cells(StripMesh& mesh, Diagonals diagonals) {
+void add_cells(StripMesh& mesh) {
   for (int i = 0; i + 1 < mesh.columns; ++i) {
     const bool ghost = i < mesh.ghosts[0] || i + 1 >= mesh.columns - mesh.ghosts[1];
     for (int j = 0; j + 1 < mesh.across; ++j) {
       const int a = mesh.vertex(i, j), b = mesh.vertex(i + 1, j), c = mesh.vertex(i + 1, j + 1),
                 d = mesh.vertex(i, j + 1);
-      const bool rising = diagonals == Diagonals::one_way || (i - mesh.ghosts[0] + j) % 2 == 0;
+      const bool rising = (i - mesh.ghosts[0] + j) % 2 == 0;
       mesh.triangles.push_back(rising ? std::array{a, b, c} : std::array{a, b, d});
       mesh.triangles.push_back(rising ? std::array{a, c, d} : std::array{b, c, d});
       mesh.ghost.insert(mesh.ghost.end(), 2, ghost);
@@ -44,8 +44,7 @@ void add_edges(StripMesh& mesh) {
 
 }  // namespace
 
-StripMesh make_strip_mesh(double length, double width, int along, int across, std::array<bool, 2> ghosts,
-                          Diagonals diagonals) {
+StripMesh make_strip_mesh(double length, double width, int along, int across, std::array<bool, 2> ghosts) {
   assert(along >= 2 && across >= 2 && length > 0 && width > 0);
   StripMesh mesh;
   mesh.ghosts = {ghosts[0] ? 1 : 0, ghosts[1] ? 1 : 0};
@@ -58,7 +57,7 @@ StripMesh make_strip_mesh(double length, double width, int along, int across, st
       mesh.vertices.emplace_back((i - mesh.ghosts[0]) * mesh.cell_length, j * mesh.cell_width - width / 2);
     }
   }
-  add_cells(mesh, diagonals);
+  add_cells(mesh);
   add_edges(mesh);
   return mesh;
 }

@@ -8,20 +8,15 @@
 
 namespace wunderlich::baseline::shell {
 
-/// How the cells of the grid are cut into two triangles.
-enum class Diagonals {
-  alternate,  ///< to and fro like a chessboard: no handedness, and straight lines of edges lean both ways
-  one_way,    ///< all alike: the strip is stiffer against one handedness of twist than against the other
-};
-
 struct Edge {
   std::array<int, 2> ends{};             ///< vertices
   std::array<int, 2> triangles{-1, -1};  ///< the second is -1 on the rim
   bool diagonal = false;
 };
 
-/// Vertex j of column i is number i * across + j. At a clamped end one more column stands outside the strip: its cells
-/// are ghosts without energy that only give the strip's end its slope.
+/// Cells are cut into two triangles to and fro like a chessboard: no handedness, and straight lines of edges lean both
+/// ways. Vertex j of column i is number i * across + j. At a clamped end one more column stands outside the strip: its
+/// cells are ghosts without energy that only give the strip's end its slope.
 struct StripMesh {
   int columns = 0;                                 ///< with ghosts
   int across = 0;                                  ///< the paper's m
@@ -39,8 +34,7 @@ struct StripMesh {
 };
 
 /// `along` >= 2 vertices over `length`, `across` >= 2 over `width` [m]; asserts otherwise.
-StripMesh make_strip_mesh(double length, double width, int along, int across, std::array<bool, 2> ghosts,
-                          Diagonals diagonals);
+StripMesh make_strip_mesh(double length, double width, int along, int across, std::array<bool, 2> ghosts);
 
 /// Gradient in the flat strip of the linear function that is 1 at vertex `k` of a triangle and 0 at the others [1/m].
 Vec2 hat_gradient(const StripMesh& mesh, int triangle, int k);

@@ -20,15 +20,10 @@ bool is_ghost(const shell::StripMesh& mesh, const shell::Edge& edge) {
 shell::Shell make_shell(const geometry::RibbonSpec& strip, const shell::Resolution& resolution) {
   shell::Shell shell;
   shell.strip = strip;
-  shell.mesh = shell::make_strip_mesh(strip.length, strip.width, resolution.along, resolution.across, strip.clamped,
-                                      resolution.diagonals);
+  shell.mesh = shell::make_strip_mesh(strip.length, strip.width, resolution.along, resolution.across, strip.clamped);
   const shell::StripMesh& mesh = shell.mesh;
   shell.flat = mesh.vertices;
-  shell.mass.assign(shell.flat.size(), 0);
-  for (const auto& triangle : mesh.triangles) {
-    for (const int v : triangle)
-      shell.mass[static_cast<std::size_t>(v)] += strip.area_density * mesh.triangle_area() / 3;
-  }
+  shell::lump_masses(mesh.triangles, shell);
   shell.lengths.resize(2);
   for (const shell::Edge& edge : mesh.edges) {
     if (is_ghost(mesh, edge)) continue;

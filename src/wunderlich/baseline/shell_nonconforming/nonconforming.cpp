@@ -75,21 +75,18 @@ shell::Sparse boundary_rows(const shell::StripMesh& mesh) {
 shell::Shell make_shell(const geometry::RibbonSpec& strip, const shell::Resolution& resolution) {
   shell::Shell shell;
   shell.strip = strip;
-  shell.mesh = shell::make_strip_mesh(strip.length, strip.width, resolution.along, resolution.across, strip.clamped,
-                                      resolution.diagonals);
+  shell.mesh = shell::make_strip_mesh(strip.length, strip.width, resolution.along, resolution.across, strip.clamped);
   const shell::StripMesh& mesh = shell.mesh;
   for (const shell::Edge& edge : mesh.edges) {
     shell.flat.push_back((mesh.vertices[static_cast<std::size_t>(edge.ends[0])] +
                           mesh.vertices[static_cast<std::size_t>(edge.ends[1])]) /
                          2);
   }
-  shell.mass.assign(shell.flat.size(), 0);
+  shell::lump_masses(mesh.triangle_edges, shell);
   shell.lengths.resize(1);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& edges = mesh.triangle_edges[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      shell.mass[static_cast<std::size_t>(edges[k])] += strip.area_density * mesh.triangle_area() / 3;
-      if (mesh.ghost[t]) continue;
+    for (std::size_t k = 0; k < 3 && !mesh.ghost[t]; ++k) {
       const std::array<int, 2> ends{edges[k], edges[(k + 1) % 3]};
       const Vec2 gap = shell.flat[static_cast<std::size_t>(ends[1])] - shell.flat[static_cast<std::size_t>(ends[0])];
       shell.lengths[0].push_back({ends, gap.norm()});
