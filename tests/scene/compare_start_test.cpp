@@ -69,7 +69,7 @@ compare: {shell_conforming: {along: 21, across: 3}}
   EXPECT_TRUE(shell.converged) << shell.failure;
   EXPECT_NEAR(shell.energy.elastic / ribbon.energy.elastic, 1, 0.03);
   ASSERT_TRUE(shell.imbalance && ribbon.imbalance);
-  EXPECT_LE(*shell.imbalance, 0.05);
+  EXPECT_LE(*shell.imbalance, 1e-6);
   EXPECT_LE(*ribbon.imbalance, 1e-8);
 }
 
