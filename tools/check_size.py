@@ -15,7 +15,7 @@ from pathlib import Path
 
 FILE_LIMIT = 400
 FUNCTION_LIMIT = 80
-FOLDERS = ["src", "apps", "tests", "bench", "tools", "validation", "web"]
+FOLDERS = ["src", "apps", "bindings", "python", "tests", "bench", "tools", "validation", "web"]
 SUFFIXES = {".cpp", ".hpp", ".py", ".ts", ".js"}
 SCOPES = re.compile(r"\b(namespace|class|struct|union|enum|extern)\b")
 

@@ -2,7 +2,7 @@
 # tools/format.sh formats every C++ file in place; with --check it only lists the files that differ.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-mapfile -t files < <(find src apps tests bench -name '*.cpp' -o -name '*.hpp' | sort)
+mapfile -t files < <(find src apps bindings tests bench -name '*.cpp' -o -name '*.hpp' | sort)
 if [ "${1:-}" != --check ]; then
   clang-format -i "${files[@]}"
   exit

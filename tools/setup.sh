@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
-# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py.
+# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py,
+# `tools/setup.sh python` for the Python package.
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
 
 # A line each: what to look for (a command, or a Debian package when it starts with "lib" or "python3-" or ends in
-# "-dev"), the package that brings it, and who needs it.
+# "-dev"), the package that brings it, and who needs it, separated by commas.
 needs='
 g++                 g++                 run
 cmake               cmake               run
@@ -27,7 +28,13 @@ libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
 clang-tidy          clang-tidy          test
 admesh              admesh              test
-python3-matplotlib  python3-matplotlib  validation
+python3-matplotlib  python3-matplotlib  validation,test
+pybind11-dev        pybind11-dev        python,test
+python3-dev         python3-dev         python,test
+python3-numpy       python3-numpy       python,test
+python3-pip         python3-pip         python,test
+python3-venv        python3-venv        python,test
+mypy                mypy                test
 '
 
 present() {
@@ -42,7 +49,7 @@ missing() {
   local probe package group
   while read -r probe package group; do
     [ -n "$probe" ] || continue
-    [ "$group" = run ] || [ "$group" = "$1" ] || continue
+    [[ ,$group, == *,run,* || ,$group, == *,$1,* ]] || continue
     present "$probe" || echo "$package"
   done <<<"$needs"
 }
@@ -64,8 +71,8 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|test|validation) ;;
-  *) echo "usage: tools/setup.sh [run|test|validation]" >&2; exit 2 ;;
+  run|test|validation|python) ;;
+  *) echo "usage: tools/setup.sh [run|test|validation|python]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"

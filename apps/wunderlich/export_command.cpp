@@ -10,6 +10,7 @@
 #include "wunderlich/io/file.hpp"
 #include "wunderlich/io/run_folder.hpp"
 #include "wunderlich/io/summary_json.hpp"
+#include "wunderlich/report/report_template.hpp"
 
 namespace wunderlich::app {
 
@@ -34,7 +35,8 @@ int export_command(const ExportArguments& arguments) {
   const std::filesystem::path folder = arguments.run;
   const StoredRun run = load_run(folder);
   const std::filesystem::path summary = folder / io::summary_file;
-  io::RunOutput output = output_of(run, io::parse_summary(io::read_file(summary), summary.string()));
+  io::RunOutput output =
+      output_of(run, io::parse_summary(io::read_file(summary), summary.string()), report::report_template());
   if (arguments.thickness) check_thickness(*arguments.thickness, format, output.patterns);
   output.thickness = arguments.thickness;
   if (!arguments.out.empty()) {

@@ -9,6 +9,7 @@
 #include "stored_run.hpp"
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/run_folder.hpp"
+#include "wunderlich/report/report_template.hpp"
 #include "wunderlich/scene/read.hpp"
 #include "wunderlich/scene/run.hpp"
 
@@ -128,7 +129,7 @@ int run_command(const RunArguments& arguments) {
   }
 
   const StoredRun run{start.scene, std::move(result.progress), result.outcome};
-  io::write_run_folder(folder, output_of(run, result.summary), formats);
+  io::write_run_folder(folder, output_of(run, result.summary, report::report_template()), formats);
   if (!arguments.quiet) report(run, result.summary, folder);
   return exit_code(run.outcome);
 }

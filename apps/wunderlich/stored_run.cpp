@@ -7,7 +7,6 @@
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/run_folder.hpp"
-#include "wunderlich/report/report_template.hpp"
 #include "wunderlich/scene/read.hpp"
 
 namespace wunderlich::app {
@@ -147,7 +146,7 @@ StoredRun load_run(const std::filesystem::path& folder) {
   return from_checkpoint(io::read_checkpoint(file), file.string());
 }
 
-io::RunOutput output_of(const StoredRun& run, const Summary& summary) {
+io::RunOutput output_of(const StoredRun& run, const Summary& summary, std::string_view report_template) {
   io::RunOutput output;
   output.title = run.scene.title;
   output.summary = summary;
@@ -162,7 +161,7 @@ io::RunOutput output_of(const StoredRun& run, const Summary& summary) {
   output.parameters = parameters_of(run.scene);
   output.scene_text = run.scene.resolved;
   output.checkpoint = to_checkpoint(run);
-  output.report_template = report::report_template();
+  output.report_template = report_template;
   return output;
 }
 

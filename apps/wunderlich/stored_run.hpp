@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "wunderlich/io/checkpoint.hpp"
 #include "wunderlich/io/run_output.hpp"
@@ -25,7 +26,7 @@ StoredRun from_checkpoint(const io::Checkpoint& checkpoint, const std::string& o
 /// The run kept in a run folder. Throws InputError if the folder is none.
 StoredRun load_run(const std::filesystem::path& folder);
 
-/// Everything that the run folder and the exports are made from.
-io::RunOutput output_of(const StoredRun& run, const Summary& summary);
+/// Everything that the run folder and the exports are made from; without the page's template all but the page.
+io::RunOutput output_of(const StoredRun& run, const Summary& summary, std::string_view report_template);
 
 }  // namespace wunderlich::app

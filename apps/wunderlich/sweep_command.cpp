@@ -82,7 +82,7 @@ sweep::Keep keeper(const sweep::Sweep& sweep, const fs::path& folder) {
     list.reserve(formats.size());
     for (const std::string& word : formats) list.push_back(io::parse_format(word));
     const StoredRun run{scene, std::move(result.progress), result.outcome};
-    io::write_run_folder(folder / "runs" / key, output_of(run, result.summary), list);
+    io::write_run_folder(folder / "runs" / key, output_of(run, result.summary, report::report_template()), list);
   };
 }
 

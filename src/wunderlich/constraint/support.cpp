@@ -48,6 +48,11 @@ double end_time(const Motion& motion) {
   return motion.keys.back().time;
 }
 
+void move_to(const PoseKey& target, double now, Motion& motion) {
+  assert(target.time > now);
+  motion.keys = {{now, pose_at(motion, now), 0}, target};
+}
+
 LoadKey load_at(const Load& load, double time) {
   const auto [before, after, fraction] = bracket(load.keys, time);
   return {time, mix(before.force, after.force, fraction), mix(before.torque, after.torque, fraction)};

@@ -27,6 +27,9 @@ struct Motion {
 Pose pose_at(const Motion& motion, double time);
 double end_time(const Motion& motion);
 
+/// Instead: from where it is at time `now` evenly to `target`, whose time is later, and there it stays.
+void move_to(const PoseKey& target, double now, Motion& motion);
+
 /// Which rotations a support holds.
 enum class Orientation {
   free,           ///< a pin

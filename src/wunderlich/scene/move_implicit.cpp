@@ -14,15 +14,20 @@ namespace implicit = solver::implicit;
 
 namespace {
 
-/// One strip with the supports that hold at a time, as they hold it.
-solver::PathProblem path_of(const Scene& scene, double time) {
-  solver::PathOptions options;
-  options.model = scene.solver.energy;
+/// What surrounds a strip, with the supports that hold at a time.
+constraint::Surroundings surroundings_at(const Scene& scene, double time) {
   constraint::Surroundings surroundings = scene.surroundings;
   auto& supports = surroundings.supports;
   supports.erase(std::remove_if(supports.begin(), supports.end(), [&](const auto& s) { return !holds(s, time); }),
                  supports.end());
-  return solver::make_path(motion_ribbon(scene, time), surroundings, options);
+  return surroundings;
+}
+
+/// One strip as it is held at a time.
+solver::PathProblem path_of(const Scene& scene, double time) {
+  solver::PathOptions options;
+  options.model = scene.solver.energy;
+  return solver::make_path(motion_ribbon(scene, time), surroundings_at(scene, time), options);
 }
 
 std::vector<solver::PathProblem> paths_of(const Scene& scene, double time) {
@@ -93,6 +98,12 @@ class ImplicitMover : public Mover {
     for (std::size_t i = 0; i < paths_.size(); ++i) implicit::change_supports(before[i], paths_[i], state_.strips[i]);
     implicit::find_accelerations(paths_, scene_.solver.implicit, state_, work_);
     take_shapes();
+  }
+
+  void follow() override {
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      paths_[i].surroundings = surroundings_at(*strips_of(scene_)[i], state_.time());
+    }
   }
 
   const geometry::Ribbon& ribbon(std::size_t strip) const override { return paths_[strip].ribbon; }

@@ -84,6 +84,8 @@ class TwoStageMover : public Mover {
     shapes_.front() = state_.shape;
   }
 
+  void follow() override {}  // each step asks the scene
+
   const geometry::Ribbon& ribbon(std::size_t) const override { return ribbon_; }
   const std::vector<geometry::State>& shapes() const override { return shapes_; }
   double kinetic_energy() const override { return energy::kinetic_value(ribbon_, state_.shape); }

@@ -27,8 +27,10 @@ class Mover {
   /// One step; a step that fails leaves everything as it was. Times of phases go to the recording.
   /// `halvings`: how often it has been halved.
   virtual Move step(double t0, double t1, int halvings, Recording& recording) = 0;
-  /// Takes the supports that hold from now on, after some have let go.
+  /// Takes what holds and loads the strips from now on, after a support has let go or forces have changed at once.
   virtual void release() = 0;
+  /// Takes where supports and loads go from now on; those of this instant are the same.
+  virtual void follow() = 0;
   virtual const geometry::Ribbon& ribbon(std::size_t strip) const = 0;
   virtual const std::vector<geometry::State>& shapes() const = 0;  ///< one a strip, at least one
   virtual double kinetic_energy() const = 0;                       ///< [J]

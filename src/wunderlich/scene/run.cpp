@@ -10,10 +10,6 @@ namespace wunderlich::scene {
 
 namespace {
 
-geometry::Ribbon ribbon_of(const Scene& scene, const geometry::State& state) {
-  return scene.solver.method == Method::equilibrium ? path_ribbon(scene, state) : motion_ribbon(scene, state.time);
-}
-
 /// Adds one mesh to another with the same fields.
 void append(const Mesh& part, Mesh& whole) {
   const auto first = static_cast<int>(whole.points.size());
@@ -30,6 +26,10 @@ void append(const Mesh& part, Mesh& whole) {
 }
 
 }  // namespace
+
+geometry::Ribbon ribbon_of(const Scene& strip, const geometry::State& state) {
+  return strip.solver.method == Method::equilibrium ? path_ribbon(strip, state) : motion_ribbon(strip, state.time);
+}
 
 RunResult run(const Scene& scene, const Observer& observer, const Progress* resume) {
   return scene.solver.method == Method::equilibrium ? run_path(scene, observer, resume)

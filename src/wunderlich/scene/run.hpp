@@ -48,6 +48,9 @@ void check_start(const Scene& scene);
 /// as an uninterrupted one.
 RunResult run(const Scene& scene, const Observer& observer, const Progress* resume = nullptr);
 
+/// The strip whose state this is: one of `strips_of`, with the ends that are held then.
+geometry::Ribbon ribbon_of(const Scene& strip, const geometry::State& state);
+
 /// The exporter's view of a record. Several strips are one surface in parts, told apart by its field `ribbon`.
 Frame frame_of(const Scene& scene, const Record& record);
 std::vector<FlatPattern> patterns_of(const Scene& scene, const Record& record);
