@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
-# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py.
+# `tools/setup.sh web` for the page in the browser as well, `tools/setup.sh test` for every check, `tools/setup.sh validation` for the figures of validation/run.py.
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
@@ -27,6 +27,9 @@ libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
 clang-tidy          clang-tidy          test
 admesh              admesh              test
+em++                emscripten          web
+xz                  xz-utils            web
+chromium            chromium            test
 python3-matplotlib  python3-matplotlib  validation
 '
 
@@ -42,7 +45,7 @@ missing() {
   local probe package group
   while read -r probe package group; do
     [ -n "$probe" ] || continue
-    [ "$group" = run ] || [ "$group" = "$1" ] || continue
+    [ "$group" = run ] || [ "$group" = "$1" ] || [ "$group:$1" = web:test ] || continue
     present "$probe" || echo "$package"
   done <<<"$needs"
 }
@@ -64,11 +67,13 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|test|validation) ;;
-  *) echo "usage: tools/setup.sh [run|test|validation]" >&2; exit 2 ;;
+  run|web|test|validation) ;;
+  *) echo "usage: tools/setup.sh [run|web|test|validation]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"
+
+[ "$group" != web ] && [ "$group" != test ] || tools/yaml_source.sh build/yaml-cpp
 
 node_major=$(node --version | sed 's/^v\([0-9]*\).*/\1/')
 if [ "$node_major" -lt 18 ]; then
