@@ -1,6 +1,8 @@
 # The only file that names third-party packages. All come from Debian 12; see docs/decisions for why each.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-if(WUNDERLICH_APP OR WUNDERLICH_TESTS OR WUNDERLICH_FUZZ OR WUNDERLICH_PYTHON)
+if(WUNDERLICH_WEB)
+  include(${CMAKE_CURRENT_LIST_DIR}/web.cmake)
+elseif(WUNDERLICH_APP OR WUNDERLICH_TESTS OR WUNDERLICH_FUZZ OR WUNDERLICH_PYTHON)
   find_package(yaml-cpp 0.7 REQUIRED)
   find_package(nlohmann_json 3.11 REQUIRED)
   find_package(fmt 9 REQUIRED)

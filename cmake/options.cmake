@@ -19,6 +19,12 @@ if(WUNDERLICH_NATIVE)
   endif()
   target_compile_definitions(wunderlich_options INTERFACE EIGEN_DONT_VECTORIZE)
 endif()
+if(WUNDERLICH_WEB)
+  # Wasm's own exceptions cost nothing until one is thrown; every browser of 2022 or later has both.
+  add_compile_options(-msimd128 -fwasm-exceptions)
+  add_link_options(-fwasm-exceptions)
+  target_compile_definitions(wunderlich_options INTERFACE EIGEN_DONT_VECTORIZE)  # it does not know these vectors
+endif()
 # Vectors of four are passed to inline functions only; what their calling convention would be does not matter.
 target_compile_options(wunderlich_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
 if(WUNDERLICH_WARNINGS_AS_ERRORS)

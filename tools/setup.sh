@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
 # `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py,
-# `tools/setup.sh python` for the Python package.
+# `tools/setup.sh python` for the Python package, `tools/setup.sh web` for the page in the browser.
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
@@ -35,6 +35,9 @@ python3-numpy       python3-numpy       python,test
 python3-pip         python3-pip         python,test
 python3-venv        python3-venv        python,test
 mypy                mypy                test
+em++                emscripten          web,test
+xz                  xz-utils            web,test
+chromium            chromium            test
 '
 
 present() {
@@ -71,11 +74,13 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|test|validation|python) ;;
-  *) echo "usage: tools/setup.sh [run|test|validation|python]" >&2; exit 2 ;;
+  run|web|test|validation|python) ;;
+  *) echo "usage: tools/setup.sh [run|web|test|validation|python]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"
+
+[ "$group" != web ] && [ "$group" != test ] || tools/yaml_source.sh build/yaml-cpp
 
 node_major=$(node --version | sed 's/^v\([0-9]*\).*/\1/')
 if [ "$node_major" -lt 18 ]; then

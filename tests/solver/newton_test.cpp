@@ -74,6 +74,10 @@ ChainProblem random_problem(const Ribbon& ribbon, const energy::Model& model, Ra
     problem.turn_anchor.push_back(random.vector());
     problem.facets.push_back({root * root.transpose(), anchor});
   }
+  for (const int segment : {2, 0, ribbon.segments - 1}) {
+    problem.grips.push_back({segment, problem.facets[static_cast<std::size_t>(segment)]});
+    problem.grips.back().tie.anchor.col(0) = random.vector();
+  }
   problem.loads = {{ribbon.segments, LoadFrame::material, random.vector(), random.vector()},
                    {3, LoadFrame::space, random.vector(), random.vector()}};
   return problem;

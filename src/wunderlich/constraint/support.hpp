@@ -81,10 +81,19 @@ struct Contact {
   double friction = 0;   ///< Coulomb's coefficient of the strip on itself
 };
 
+/// A spring between the middle of a segment and a point, and between its directions and those of a frame: a hand.
+struct Grip {
+  int segment = 0;
+  double stiffness = 0;       ///< of the middle [N/m]
+  double turn_stiffness = 0;  ///< of each of d2 and d3 [N m]
+  Pose target;
+};
+
 /// Everything imposed from outside.
 struct Surroundings {
   std::vector<Support> supports;
   std::vector<Load> loads;
+  std::vector<Grip> grips;
   std::vector<Obstacle> obstacles;
   Contact contact;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]

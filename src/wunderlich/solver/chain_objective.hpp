@@ -38,6 +38,12 @@ struct FacetTie {
   Mat3 anchor = Mat3::Zero();  ///< middle, d3, d2 as columns
 };
 
+/// One more such spring, on the facet of link `node`: a hand.
+struct GripTie {
+  int node = 0;
+  FacetTie tie;
+};
+
 /// Everything that is minimised over a chain: elastic energy + barrier - loads + ties, subject to the holds and, for
 /// loops, the closure. Ties are a proximal term in statics and the inertia of a step in dynamics.
 struct ChainProblem {
@@ -51,6 +57,7 @@ struct ChainProblem {
   std::vector<double> turn_tie;             ///< (segments) or none: (tie/2) |d2 - anchor|^2 of each segment [N m]
   std::vector<Vec3> turn_anchor;            ///< (segments) or none
   std::vector<FacetTie> facets;             ///< (segments) or none
+  std::vector<GripTie> grips;               ///< in any order
   double viscosity = 0;                     ///< times D w h/2 (g - g before)^2 of each hinge, g its bending
   const geometry::Chain* before = nullptr;  ///< where that bending is taken from, if the viscosity is not 0
   ContactProblem contact;                   ///< solids that the strip stays out of

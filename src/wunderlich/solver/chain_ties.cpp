@@ -3,6 +3,7 @@
 #include "wunderlich/energy/joint_energy.hpp"
 #include "wunderlich/math/four.hpp"
 #include "wunderlich/math/rotation.hpp"
+#include "wunderlich/solver/by_node.hpp"
 
 namespace wunderlich::solver {
 
@@ -35,6 +36,11 @@ math::PoseTerm facet_term(const Ribbon& ribbon, const FacetTie& tie, const Kinem
   term.hessian.bottomRightCorner<3, 3>() = products.trace() * Mat3::Identity() - products;
   term.geometric = 0.5 * (forces + forces.transpose()) - forces.trace() * Mat3::Identity();
   return term;
+}
+
+double facet_value(const Ribbon& ribbon, const FacetTie& tie, const Kinematics& k, std::size_t i) {
+  const Mat3 gap = facet_of(ribbon, k, i) - tie.anchor;
+  return 0.5 * (tie.weight * gap.transpose() * gap).trace();
 }
 
 /// d2 turns with its segment. With d2 = d, its anchor a and the tie m, exactly m (a.d I - (a d^T + d a^T)/2), of which
@@ -105,9 +111,10 @@ double tie_value(const Ribbon& ribbon, const ChainProblem& problem, const Chain&
     value += 0.5 * problem.turn_tie[i] * (k.frame[i].col(1) - problem.turn_anchor[i]).squaredNorm();
   }
   for (std::size_t i = 0; i < problem.facets.size(); ++i) {
-    const FacetTie& tie = problem.facets[i];
-    const Mat3 gap = facet_of(ribbon, k, i) - tie.anchor;
-    value += 0.5 * (tie.weight * gap.transpose() * gap).trace();
+    value += facet_value(ribbon, problem.facets[i], k, i);
+  }
+  for (const GripTie& grip : problem.grips) {
+    value += facet_value(ribbon, grip.tie, k, static_cast<std::size_t>(grip.node));
   }
   for (std::size_t i = 0; problem.viscosity > 0 && i < chain.kappa.size(); ++i) {
     if (ribbon.hinge_length[i] == 0) continue;
@@ -129,6 +136,9 @@ void add_ties(const Ribbon& ribbon, const ChainProblem& problem, const Chain& ch
   }
   for (std::size_t i = problem.facets.size(); i-- > 0;) {
     system.pose_terms.push_back(facet_term(ribbon, problem.facets[i], k, i));
+  }
+  for (const GripTie& grip : problem.grips) {
+    insert_by_node(facet_term(ribbon, grip.tie, k, static_cast<std::size_t>(grip.node)), system.pose_terms);
   }
   if (problem.viscosity > 0) add_viscosity(ribbon, problem, chain, system.links);
 }

@@ -91,6 +91,17 @@ void add_loads(const PathProblem& path, const PathState& state, double t, ChainP
   }
 }
 
+void add_grips(const std::vector<constraint::Grip>& grips, std::vector<GripTie>& ties) {
+  ties.clear();
+  for (const constraint::Grip& grip : grips) {
+    const Mat3 frame = grip.target.frame.toRotationMatrix();
+    GripTie tie{grip.segment, {}};
+    tie.tie.weight.diagonal() << grip.stiffness, grip.turn_stiffness, grip.turn_stiffness;
+    tie.tie.anchor << grip.target.position, frame.col(2), frame.col(1);
+    ties.push_back(tie);
+  }
+}
+
 }  // namespace
 
 bool holds_base_frame(const Ribbon& ribbon, const Support& support) {
@@ -142,6 +153,7 @@ void problem_at(const PathProblem& path, const PathState& state, double t, Chain
     }
   }
   add_loads(path, state, t, problem);
+  add_grips(path.surroundings.grips, problem.grips);
   place_solids(ribbon, path.surroundings, state.phase == Phase::approach ? 0 : t, problem.contact);
   place_self(path.ribbon, path.surroundings, path.surroundings.contact.distance, state.closed, state.chain.eta,
              problem.self);

@@ -1,7 +1,7 @@
 // The page of a comparison: one view a model, all at the same share of their runs, and the table of figures.
 import { readModels, type ModelRun } from './compare_data';
 import type { Frame } from './data';
-import { byId, element, number, seconds } from './format';
+import { byId, element, number, seconds } from '../../shared/format';
 import { createViewer, type Viewer } from './viewer';
 
 type Row = [string, (model: ModelRun) => string];

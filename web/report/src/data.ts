@@ -1,4 +1,5 @@
 // The run stored in the page, unpacked.
+import type { FieldName } from '../../shared/colour';
 
 export interface Summary {
   program: string; version: string; scene: string; model: string; method: string;
@@ -22,7 +23,7 @@ export interface Summary {
   warnings: string[];
 }
 
-export type FieldName = 'kappa' | 'tau' | 'eta';
+export type { FieldName };
 
 export interface Frame {
   time: number;
@@ -139,4 +140,12 @@ export function readRun(text: string): Run {
 /** Whether passing once along the ribbon turns it over: a Moebius strip has one side. */
 export function isOneSided(run: Run): boolean {
   return run.summary.closure_error !== undefined && Math.abs(Math.round(2 * run.summary.topology.link)) % 2 === 1;
+}
+
+/** A value that all but two per cent of the field stay below, so that a spike does not wash out the rest. */
+export function fieldRange(frames: Frame[], name: FieldName): number {
+  const sizes: number[] = [];
+  for (const frame of frames) for (const value of frame.fields[name]) sizes.push(Math.abs(value));
+  sizes.sort((a, b) => a - b);
+  return sizes[Math.floor(0.98 * (sizes.length - 1))] || sizes[sizes.length - 1] || 1;
 }

@@ -1,7 +1,7 @@
 // Puts the page together: one position in time, shown everywhere.
-import { fieldLabels, fieldRange, gradient } from './colour';
-import { readRun, type FieldName, type Run } from './data';
-import { byId, element, number } from './format';
+import { fieldLabels, gradient } from '../../shared/colour';
+import { fieldRange, readRun, type FieldName, type Run } from './data';
+import { byId, element, number } from '../../shared/format';
 import { createHistory, createProfiles } from './plots';
 import { showCertificate, showDetails, showFigures, showHeader, showScene } from './tables';
 import { createViewer, type Colour, type Viewer } from './viewer';

@@ -1,41 +1,9 @@
 // Curves along the ribbon at the shown instant, and through the run.
 import uPlot from 'uplot';
-import { fieldLabels } from './colour';
+import { fieldLabels } from '../../shared/colour';
 import type { FieldName, Run } from './data';
-import { byId, element, number } from './format';
-
-const style = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-function axes(xLabel: string, yLabel: string, extra: Partial<uPlot.Axis> = {}): uPlot.Axis[] {
-  const common: uPlot.Axis = {
-    stroke: () => style('--quiet'),
-    grid: { stroke: () => style('--line'), width: 1 },
-    ticks: { stroke: () => style('--line'), width: 1, size: 4 },
-    font: '12px system-ui, sans-serif',
-    labelFont: '12px system-ui, sans-serif',
-    labelSize: 18,
-    labelGap: 2,
-  };
-  return [
-    { ...common, label: xLabel, size: 30 },
-    { ...common, label: yLabel, size: 58, ...extra },
-  ];
-}
-
-function series(label: string, colour: string, options: Partial<uPlot.Series> = {}): uPlot.Series {
-  return {
-    label, stroke: () => style(colour), width: 1.8, points: { show: false },
-    value: (_plot, value) => (value === null || value === undefined ? '–' : number(value, 4)), ...options,
-  };
-}
-
-/** A plot that fills its box and is drawn again when the box or the theme changes. */
-function mount(box: HTMLElement, options: Omit<uPlot.Options, 'width' | 'height'>, data: uPlot.AlignedData, height: number) {
-  const plot = new uPlot({ ...options, width: Math.max(200, box.clientWidth), height }, data, box);
-  new ResizeObserver(() => plot.setSize({ width: Math.max(200, box.clientWidth), height })).observe(box);
-  document.addEventListener('themechange', () => plot.redraw(false, true));
-  return plot;
-}
+import { byId, element, number } from '../../shared/format';
+import { axes, mount, series, style } from '../../shared/plot';
 
 /** Vertical lines over a plot, at x values asked for at each drawing. */
 function verticals(at: () => number[], colour: string, dash: number[] = []): uPlot.Plugin {

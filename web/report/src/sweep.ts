@@ -1,5 +1,5 @@
 // The page of a sweep: every result over the axes, as heat maps, lines or points, each linked to its run.
-import { byId, element, number } from './format';
+import { byId, element, number } from '../../shared/format';
 import { heatMap, lineChart, type Mark } from './sweep_charts';
 
 interface Axis { columns: string[]; log: boolean; values: (number | null)[][]; words: string[][] }

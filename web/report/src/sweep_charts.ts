@@ -1,5 +1,5 @@
 // Charts of a sweep as SVG, so that every mark can be a link.
-import { number } from './format';
+import { number } from '../../shared/format';
 
 export interface Mark { value: number | null; text: string; link: string | null }
 

@@ -1,6 +1,6 @@
 // Verdicts, key figures, certificate and details.
 import type { Run, Summary } from './data';
-import { byId, element, number, quantity, seconds } from './format';
+import { byId, element, number, quantity, seconds } from '../../shared/format';
 
 type Tone = 'good' | 'bad' | 'plain';
 

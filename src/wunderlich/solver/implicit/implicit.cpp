@@ -132,7 +132,7 @@ double probe_step(Paths paths, const State& state) {
 /// A strip that may float where it likes: how far it floats in a step is a linear equation, which Newton's last step
 /// solves at the iterate before. Solved here at the last one, so that linear momentum is kept to rounding.
 void float_freely(const Ribbon& ribbon, const ChainProblem& problem, Chain& chain, geometry::Kinematics& k) {
-  if (!problem.holds.empty() || !problem.loads.empty() || !problem.contact.empty()) return;
+  if (!problem.holds.empty() || !problem.loads.empty() || !problem.grips.empty() || !problem.contact.empty()) return;
   Vec3 force = Vec3::Zero();
   double stiffness = 0;
   for (std::size_t i = 0; i < problem.tie.size(); ++i) {
@@ -322,7 +322,7 @@ StepReport step(Paths paths, const Options& options, double t1, int halvings, St
   const double kinetic0 = kinetic_energy(paths, options, state);
   double own_energies = 0;
   for (const PathProblem& path : paths) own_energies += own_energy(path.ribbon);
-  bool loaded = false;  // without a potential
+  bool loaded = false;  // without a potential, or by a hand, whose work is not asked for
   double growth = 0;    // of the energy, beyond the work of loads and supports
   const auto fail = [&](const std::string& failure) {
     state.level = level;
@@ -343,8 +343,9 @@ StepReport step(Paths paths, const Options& options, double t1, int halvings, St
     const double elastic1 = report.newton.value.elastic + report.newton.value.barrier + report.newton.value.contact;
     growth = elastic1 - state.elastic + end.kinetic - kinetic0 - work_done(paths, scheme, state, work);
     const double peak = std::max(state.peak, end.kinetic);
-    loaded = std::any_of(work.strips.begin(), work.strips.end(),
-                         [](const StripWorkspace& own) { return !own.problem.loads.empty(); });
+    loaded = std::any_of(work.strips.begin(), work.strips.end(), [](const StripWorkspace& own) {
+      return !own.problem.loads.empty() || !own.problem.grips.empty();
+    });
     const bool grows = !loaded && !(growth <= kGrowth * peak + kLeastGrowth * own_energies);
     if (grows && can_damp(options, state, halvings)) continue;
     if (grows) {

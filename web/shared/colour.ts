@@ -1,5 +1,4 @@
-// Diverging colours for signed fields, and the range they cover.
-import type { FieldName, Frame } from './data';
+// Diverging colours for signed fields, and what the fields are called.
 
 /** sRGB stops from negative to positive, close to "RdBu" of ColorBrewer. */
 const stops = [
@@ -15,17 +14,13 @@ export function diverging(t: number): [number, number, number] {
   return [at(0), at(1), at(2)];
 }
 
-export function gradient(): string {
-  return `linear-gradient(90deg, ${stops.map((s) => `rgb(${s.join(' ')})`).join(', ')})`;
+/** As CSS; `upper`: from 0 on. */
+export function gradient(part: 'whole' | 'upper' = 'whole'): string {
+  const shown = part === 'whole' ? stops : stops.slice((stops.length - 1) / 2);
+  return `linear-gradient(90deg, ${shown.map((s) => `rgb(${s.join(' ')})`).join(', ')})`;
 }
 
-/** A value that all but two per cent of the field stay below, so that a spike does not wash out the rest. */
-export function fieldRange(frames: Frame[], name: FieldName): number {
-  const sizes: number[] = [];
-  for (const frame of frames) for (const value of frame.fields[name]) sizes.push(Math.abs(value));
-  sizes.sort((a, b) => a - b);
-  return sizes[Math.floor(0.98 * (sizes.length - 1))] || sizes[sizes.length - 1] || 1;
-}
+export type FieldName = 'kappa' | 'tau' | 'eta';
 
 export const fieldLabels: Record<FieldName, { symbol: string; text: string; unit: string }> = {
   kappa: { symbol: 'κ', text: 'curvature', unit: '1/m' },

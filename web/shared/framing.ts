@@ -1,10 +1,12 @@
 // Where to look from: what part of space a frame fills, and the view that shows the ribbon best.
 import * as THREE from 'three';
-import type { Frame } from './data';
+
+/** What of a frame is looked at. */
+interface Frame { points: Float32Array; normals: Float32Array }
 
 export interface Fit { centre: THREE.Vector3; radius: number; floor: number }
 
-function fitOf(points: Float32Array[]): Fit {
+export function fitOf(points: Float32Array[]): Fit {
   const box = new THREE.Box3();
   const p = new THREE.Vector3();
   for (const list of points) for (let i = 0; i < list.length; i += 3) box.expandByPoint(p.fromArray(list, i));

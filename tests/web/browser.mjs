@@ -1,0 +1,275 @@
+// The page in a real browser: loads, is pulled by mouse, touch and keyboard, shares, saves, and answers bad scenes.
+// usage: node browser.mjs NODE_MODULES [FOLDER for screenshots]
+import { spawn } from 'node:child_process';
+import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import path from 'node:path';
+import { gzipSync } from 'node:zlib';
+import { root } from './node_simulator.mjs';
+
+const { chromium } = createRequire(path.resolve(process.argv[2], 'x.js'))('playwright-core');
+const shots = path.resolve(process.argv[3] ?? path.join(root, 'build', 'web', 'shots'));
+const folder = path.join(root, 'build', 'web', 'page');
+mkdirSync(shots, { recursive: true });
+
+let failed = 0;
+const check = (ok, text) => {
+  console.log(`${ok ? 'ok    ' : 'FAILED'} ${text}`);
+  if (!ok) ++failed;
+};
+
+async function serve() {
+  const server = spawn('python3', [path.join(root, 'web', 'app', 'serve.py'), folder, '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const address = await new Promise((resolve) => server.stdout.once('data', (line) => resolve(String(line).trim())));
+  return { server, address };
+}
+
+const flags = ['--headless', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+  '--disable-background-networking', '--no-first-run'];
+
+/** A page whose errors are counted. */
+async function open(context, address) {
+  const page = await context.newPage();
+  page.on('console', (message) => {
+    if (message.type() === 'error') check(false, `the console says: ${message.text()}`);
+  });
+  page.on('pageerror', (error) => check(false, `an error: ${error.message}`));
+  await page.goto(address);
+  await page.waitForFunction(() => document.documentElement.dataset.ready, undefined, { timeout: 60000 });
+  return page;
+}
+
+const choose = async (page, scene) => {
+  await page.selectOption('#scene', scene);
+  await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 120000 });
+};
+const nodes = (page) => page.evaluate(() => window.wunderlich.nodes());
+const far = (a, b) => Math.hypot(...[0, 1, 2].map((c) => a[a.length - 3 + c] - b[b.length - 3 + c]));
+const bad = (page) => page.evaluate(() => document.getElementById('status').classList.contains('bad'));
+
+/** Where a node is on the screen. */
+async function place(page, node) {
+  await page.locator('#view').scrollIntoViewIfNeeded();
+  return page.evaluate((n) => {
+    const box = document.querySelector('#view canvas').getBoundingClientRect();
+    const [x, y] = window.wunderlich.place(0, n);
+    return [box.left + x, box.top + y];
+  }, node);
+}
+const moved = (page, before, least) => page.waitForFunction(([start, far]) => {
+  const now = window.wunderlich.nodes();
+  return Math.hypot(...[0, 1, 2].map((c) => now[now.length - 3 + c] - start[start.length - 3 + c])) > far;
+}, [before, least], { timeout: 60000 });
+
+/** The share of the picture's pixels that are as red as the ribbon. */
+async function drawn(page, png) {
+  return page.evaluate(async (data) => {
+    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
+    const red = pixels.filter((p) => (p & 255) > ((p >> 16) & 255) + 50).length;
+    return red / pixels.length;
+  }, png.toString('base64'));
+}
+
+async function sizes() {
+  const all = readdirSync(folder).map((name) => [name, gzipSync(readFileSync(path.join(folder, name)), { level: 9 }).length]);
+  const whole = all.reduce((sum, [, size]) => sum + size, 0);
+  check(whole < 1e6, `${(whole / 1e6).toFixed(3)} MB gzipped: ${all.map(([name, size]) => `${name} ${size}`).join(', ')}`);
+}
+
+async function mouse(page) {
+  await choose(page, 'cantilever');
+  const before = await nodes(page), [x, y] = await place(page, 50);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  check(await page.evaluate(() => window.wunderlich.holds()), 'the mouse takes the free end');
+  await page.mouse.move(x - 60, y - 90, { steps: 6 });
+  await moved(page, before, 0.1);
+  check(true, 'the end follows the mouse');
+  await page.mouse.wheel(0, 300);
+  await page.mouse.up();
+  check(!(await page.evaluate(() => window.wunderlich.holds())), 'and is let go');
+  const now = await nodes(page), error = (await page.evaluate(() => window.wunderlich.numbers())).area_error;
+  check(Math.hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]) < 1e-9, 'the clamped end has stayed');
+  check(error < 1e-9, `the surface is still that of the flat strip: area error ${error}`);
+  await page.screenshot({ path: path.join(shots, 'cantilever.png') });
+}
+
+async function keyboard(page) {
+  await choose(page, 'cantilever');
+  const before = await nodes(page);
+  await page.focus('#view');
+  await page.keyboard.press('e');
+  check(await page.evaluate(() => window.wunderlich.holds()), 'E takes the far end');
+  for (let k = 0; k < 8; ++k) await page.keyboard.press('ArrowUp');
+  await moved(page, before, 0.03);
+  check(true, 'arrow keys pull it');
+  await page.keyboard.press('Escape');
+  check(!(await page.evaluate(() => window.wunderlich.holds())), 'Escape lets go');
+  await page.keyboard.press(' ');
+  check(!(await page.evaluate(() => window.wunderlich.playing())), 'Space pauses');
+  const paused = await page.evaluate(() => window.wunderlich.numbers().time);
+  await page.keyboard.press('s');
+  await page.waitForFunction((t) => window.wunderlich.numbers().time > t, paused, { timeout: 20000 });
+  check(!(await page.evaluate(() => window.wunderlich.playing())), 'S is one step');
+  await page.keyboard.press(' ');
+}
+
+async function setRange(page, id, value) {
+  await page.locator(id).evaluate((input, to) => {
+    input.value = to;
+    input.dispatchEvent(new Event('input', { bubbles: true }));
+  }, String(value));
+}
+
+async function sliders(page) {
+  await choose(page, 'buckled-strip');
+  const before = (await page.evaluate(() => window.wunderlich.numbers())).elastic;
+  await setRange(page, '#set-twist', 90);
+  await page.waitForFunction((e) => window.wunderlich.numbers().elastic > 1.02 * e, before, { timeout: 60000 });
+  check(!(await bad(page)), 'twist turns the far end');
+  await choose(page, 'cantilever');
+  const nodesBefore = await nodes(page);
+  await setRange(page, '#set-gravity', 0);
+  await moved(page, nodesBefore, 0.05);
+  check(true, 'without gravity a cantilever rises');
+  const { width } = await page.evaluate(() => window.wunderlich.settings());
+  await page.focus('#set-width');
+  for (let k = 0; k < 20; ++k) await page.keyboard.press('ArrowRight');
+  await page.waitForFunction((w) => window.wunderlich.settings().width > 1.02 * w, width);
+  check(!(await bad(page)), 'width changes by keyboard');
+  await setRange(page, '#set-stiffness', Math.log(3));
+  await setRange(page, '#set-length', 1.2);
+  await page.waitForFunction(() => {
+    const all = window.wunderlich.nodes();
+    let length = 0;
+    for (let i = 3; i < all.length; i += 3) length += Math.hypot(all[i] - all[i - 3], all[i + 1] - all[i - 2], all[i + 2] - all[i - 1]);
+    return Math.abs(length - 1.2) < 1e-4;
+  }, undefined, { timeout: 60000 });
+  check(!(await bad(page)), 'the strip grows to its new length');
+}
+
+async function shareLink(page, context) {
+  await choose(page, 'cantilever');
+  await setRange(page, '#set-stiffness', Math.log(2));
+  await page.locator('label[title="torsion"]').click();
+  await page.click('#rulings');
+  await page.click('#share');
+  await page.waitForFunction(() => location.hash.startsWith('#s='));
+  const link = page.url();
+  check(link.length < 2000, `a link of ${link.length} characters`);
+  const other = await open(context, link);
+  await other.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
+  const { stiffness } = await other.evaluate(() => window.wunderlich.settings());
+  check(Math.abs(stiffness - 2) < 0.02, `it brings the scene with its stiffness: ${stiffness}`);
+  check(await other.locator('input[value=tau]').isChecked(), 'and the colours');
+  check((await other.getAttribute('#rulings', 'aria-pressed')) === 'true', 'and the rulings');
+  await other.screenshot({ path: path.join(shots, 'shared.png') });
+  await other.close();
+  const broken = await open(context, `${link.split('#')[0]}#s=AAAA`);
+  check((await broken.textContent('#status')).length > 0 && (await nodes(broken)).length > 0, 'a broken link is said to be one');
+  await broken.close();
+}
+
+async function download(page, button) {
+  const [file] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
+  return [file.suggestedFilename(), readFileSync(await file.path())];
+}
+
+async function downloads(page) {
+  const [glbName, glb] = await download(page, '#save-glb');
+  check(glbName === 'cantilever.glb' && glb.toString('latin1', 0, 4) === 'glTF' && glb.readUInt32LE(8) === glb.length, `${glbName}, ${glb.length} bytes`);
+  const [svgName, svg] = await download(page, '#save-pattern');
+  check(/pattern/.test(svgName) && svg.toString().includes('<svg'), `${svgName}, ${svg.length} bytes`);
+  const [sceneName, scene] = await download(page, '#save-scene');
+  check(sceneName === 'cantilever.yaml' && /bending_stiffness: (2\.0|1\.9)/.test(scene.toString()), `${sceneName} with the stiffness of the slider`);
+}
+
+async function badScene(page) {
+  const good = await page.inputValue('#text');
+  await page.fill('#text', good.replace('segments:', 'segmens:'));
+  await page.click('#run');
+  const message = await page.textContent('#message');
+  check(/:\d+:\d+: .*segmens/.test(message) && /segments/.test(message), `the reader's words: ${message}`);
+  const selected = await page.locator('#text').evaluate((area) => area.value.slice(area.selectionStart, area.selectionEnd));
+  check(selected.startsWith('segmens'), `and its place is marked: ${selected}`);
+  const { time } = await page.evaluate(() => window.wunderlich.numbers());
+  await page.waitForFunction((t) => window.wunderlich.numbers().time > t, time);
+  check(true, 'the scene before goes on');
+  await page.fill('#text', good.replace(/segments: \d+/, 'segments: 30'));
+  await page.locator('#text').press('Control+Enter');
+  await page.waitForFunction(() => window.wunderlich.nodes().length === 93);
+  check(await page.locator('#message').isHidden(), 'an edited scene runs');
+}
+
+async function touch(browser, address) {
+  const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
+  const page = await open(context, address);
+  await choose(page, 'cantilever');
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  check(wide <= 390, `nothing sticks out at 390 pixels: ${wide}`);
+  const before = await nodes(page), [x, y] = await place(page, 50);
+  const client = await context.newCDPSession(page);
+  const send = (type, points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  await send('touchStart', [[x, y]]);
+  for (let k = 1; k <= 8; ++k) await send('touchMove', [[x - 6 * k, y - 10 * k]]);
+  await moved(page, before, 0.1);
+  check(await page.evaluate(() => window.wunderlich.holds()), 'a finger pulls the end');
+  await send('touchStart', [[x - 48, y - 80], [x + 40, y - 80]]);
+  await send('touchMove', [[x - 48, y - 80], [x + 40, y - 20]]);
+  await send('touchEnd', []);
+  await page.waitForFunction(() => !window.wunderlich.holds());
+  check(true, 'and lets go');
+  await page.screenshot({ path: path.join(shots, 'phone.png'), fullPage: true });
+  await context.close();
+}
+
+async function times(page) {
+  console.log('milliseconds a frame of 1/60 s: segments, simulation, drawing (in software)');
+  await choose(page, 'cantilever');
+  for (const segments of [50, 100, 200]) {
+    await page.fill('#text', (await page.inputValue('#text')).replace(/segments: \d+/, `segments: ${segments}`));
+    await page.click('#run');
+    await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
+    await page.evaluate(() => window.wunderlich.measure(40));   // what runs often is compiled a second time
+    const { simulate, draw } = await page.evaluate(() => window.wunderlich.measure(40));
+    console.log(`${segments}  ${simulate.toFixed(2)}  ${draw.toFixed(1)}`);
+    if (segments === 100) check(simulate < 1000 / 60, 'the simulation of 100 segments leaves time to draw');
+  }
+}
+
+const { server, address } = await serve();
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: flags });
+try {
+  await sizes();
+  const context = await browser.newContext({ viewport: { width: 1360, height: 900 }, acceptDownloads: true });
+  const page = await open(context, address);
+  const ready = [];
+  for (let k = 0; k < 3; ++k) {   // the first time the browser itself is not ready
+    if (k > 0) await page.reload();
+    ready.push(Number(await (await page.waitForFunction(() => document.documentElement.dataset.ready)).jsonValue()));
+  }
+  check(Math.min(...ready) <= Number(process.env.READY_WITHIN ?? 2000), `ready after ${ready.join(', ')} ms`);
+  await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
+  await page.waitForTimeout(300);
+  const png = await page.locator('#view').screenshot({ path: path.join(shots, 'moebius.png') });
+  const share = await drawn(page, png);
+  check(share > 0.02, `the ribbon covers ${(100 * share).toFixed(1)} % of its picture`);
+  await page.screenshot({ path: path.join(shots, 'desktop.png'), fullPage: true });
+  const parts = { mouse, keyboard, sliders, shareLink, downloads, badScene, times };
+  const wanted = process.env.ONLY?.split(',') ?? Object.keys(parts);
+  for (const name of wanted) {
+    if (!parts[name]) continue;
+    const start = Date.now();
+    await parts[name](page, context).catch((error) => check(false, `${name}: ${error.message}`));
+    console.log(`       ${name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);
+  }
+  if (!process.env.ONLY || wanted.includes('touch')) await touch(browser, address).catch((error) => check(false, `touch: ${error.message}`));
+} finally {
+  await browser.close();
+  server.kill();
+}
+process.exit(failed ? 1 : 0);

@@ -1,0 +1,27 @@
+// A scene as a link: its text, compressed into the part of the address that no server sees.
+
+export interface Shared { name: string; text: string; colour?: string; rulings?: boolean }
+
+async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
+  const out = new Blob([bytes]).stream().pipeThrough(stream);
+  return new Uint8Array(await new Response(out).arrayBuffer());
+}
+
+export async function toFragment(shared: Shared): Promise<string> {
+  const bytes = new TextEncoder().encode(JSON.stringify(shared)) as Uint8Array<ArrayBuffer>;
+  const packed = await through(bytes, new CompressionStream('deflate-raw'));
+  let binary = '';
+  for (const byte of packed) binary += String.fromCharCode(byte);
+  return `#s=${btoa(binary).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')}`;
+}
+
+/** Null where the address holds no scene; throws where it holds a broken one. */
+export async function fromFragment(fragment: string): Promise<Shared | null> {
+  const packed = /^#s=([\w-]+)$/.exec(fragment)?.[1];
+  if (!packed) return null;
+  const binary = atob(packed.replace(/-/g, '+').replace(/_/g, '/'));
+  const bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
+  const shared = JSON.parse(new TextDecoder().decode(await through(bytes, new DecompressionStream('deflate-raw'))));
+  if (typeof shared?.text !== 'string' || typeof shared?.name !== 'string') throw new Error('the link holds no scene');
+  return shared;
+}
