@@ -27,6 +27,8 @@ libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
 clang-tidy          clang-tidy          test
 admesh              admesh              test
+python3-jsonschema  python3-jsonschema  test
+python3-yaml        python3-yaml        test
 python3-matplotlib  python3-matplotlib  validation
 '
 

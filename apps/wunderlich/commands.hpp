@@ -25,8 +25,8 @@ int check_command(const std::string& scene, const std::vector<std::string>& set)
 /// The shipped scenes, a line each.
 int scenes_command();
 
-/// docs/scene-format.md
-int schema_command();
+/// docs/scene-format.md, or docs/scene.schema.json
+int schema_command(bool json);
 
 struct ExportArguments {
   std::string run;  ///< a run folder

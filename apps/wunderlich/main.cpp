@@ -140,7 +140,9 @@ int run_program(int argc, char** argv) {
   add_sweep(program, swept, sweep_folder, exit_code);
   add_compare(program, compared, exit_code);
   CLI::App* schema = program.add_subcommand("schema", "Print the scene format as Markdown");
-  schema->callback([&] { exit_code = schema_command(); })->group("");
+  bool json = false;
+  schema->add_flag("--json", json, "As a JSON Schema, for editors");
+  schema->callback([&] { exit_code = schema_command(json); });
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

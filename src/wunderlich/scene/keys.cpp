@@ -218,7 +218,7 @@ const std::vector<Key> before_solver = {
      far,
      "",
      {},
-     "Of a coil: 1/radius is its principal curvature. Required."},
+     "Of a coil: 1/radius is its principal curvature. Required there."},
     {"initial.slope", Type::number, "", -10, 10, "0", {}, "Of a coil: eta; the coil climbs when it is not 0."},
     {"initial.position",
      Type::vector,
