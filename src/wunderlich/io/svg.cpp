@@ -59,6 +59,28 @@ std::string outline(const FlatPattern& pattern) {
   return points;
 }
 
+/// A length of 1, 2 or 5 times a power of ten, about a quarter of the strip [mm].
+double bar_length(double length) {
+  const double quarter = 0.25 * length, unit = std::pow(10, std::floor(std::log10(quarter)));
+  return unit * (quarter >= 5 * unit ? 5 : quarter >= 2 * unit ? 2 : 1);
+}
+
+/// A bar to hold a ruler to, with its length beside it.
+std::string scale_bar(double left, double y, double letter, double length) {
+  return fmt::format(
+      "<g id=\"scale\"><path d=\"M{0:.4f} {2:.4f}V{3:.4f}H{1:.4f}V{2:.4f}\"/>"
+      "<text x=\"{4:.4f}\" y=\"{3:.4f}\">{5:g} mm</text></g>\n",
+      left, left + length, y - 0.6 * letter, y, left + length + 0.5 * letter, length);
+}
+
+/// How the ends meet.
+std::string joint(const FlatPattern& pattern) {
+  if (!pattern.loop) return "";
+  if (pattern.half_twists == 0) return "; join the ends without a turn";
+  return fmt::format("; join the ends after {} half turn{}, {}-handed", std::abs(pattern.half_twists),
+                     std::abs(pattern.half_twists) == 1 ? "" : "s", pattern.half_twists > 0 ? "right" : "left");
+}
+
 }  // namespace
 
 std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
@@ -70,24 +92,27 @@ std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
   const double letter = std::clamp(0.01 * (box.right - box.left), 2.5, 60.);  // mm
   const double left = box.left - margin, top = box.top - margin;
   const double width = box.right - box.left + 2 * margin;
-  const double height = box.bottom - box.top + 2 * margin + 2 * letter;
+  const double height = box.bottom - box.top + 2 * margin + 4 * letter;
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2:.4f}mm\" height=\"{3:.4f}mm\" "
       "viewBox=\"{0:.4f} {1:.4f} {2:.4f} {3:.4f}\">\n<title>{4}</title>\n",
       left, top, width, height, escaped_xml(title));
-  // Lines one pixel wide at any zoom (a quarter of a millimetre on paper): a strip may be 6 mm long or 6 m.
+  // Lines one pixel wide at any zoom (a quarter of a millimetre on paper): a strip may be 6 mm long or 6 m. Cuts are
+  // red hairlines, as cutting machines know them.
   out += fmt::format(
-      "<style>#cut,#valley,#mountain{{fill:none;stroke:#000;stroke-width:1px}} "
-      "#cut *,#valley *,#mountain *{{vector-effect:non-scaling-stroke}} #valley{{stroke:#1257c2;stroke-dasharray:6 3}} "
-      "#mountain{{stroke:#c8321e;stroke-dasharray:6 2 1 2}} #legend{{font:{:.3f}px sans-serif;fill:#444}}</style>\n",
+      "<style>#cut,#valley,#mountain,#scale path{{fill:none;stroke:#000;stroke-width:1px}} "
+      "#cut *,#valley *,#mountain *,#scale path{{vector-effect:non-scaling-stroke}} "
+      "#cut{{stroke:#f00;stroke-width:.3px}} #valley{{stroke:#1257c2;stroke-dasharray:6 3}} "
+      "#mountain{{stroke-dasharray:6 2 1 2}} text{{font:{:.3f}px sans-serif;fill:#444}}</style>\n",
       letter);
   out += "<g id=\"valley\">\n" + folds(pattern, 1, largest) + "</g>\n";
   out += "<g id=\"mountain\">\n" + folds(pattern, -1, largest) + "</g>\n";
   out += fmt::format("<g id=\"cut\"><polygon points=\"{}\"/></g>\n", outline(pattern));
   out += fmt::format(
-      "<g id=\"legend\"><text x=\"{:.4f}\" y=\"{:.4f}\">{}: {:.6g} × {:.6g} mm, front; black: cut, blue: valley, red: "
-      "mountain</text></g>\n",
-      box.left, box.bottom + 1.6 * letter, escaped_xml(title), mm * pattern.length, mm * pattern.width);
+      "<g id=\"legend\"><text x=\"{:.4f}\" y=\"{:.4f}\">{}: {:.6g} × {:.6g} mm, front; red: cut, blue dashes: valley, "
+      "black dots and dashes: mountain{}</text></g>\n",
+      box.left, box.bottom + 1.6 * letter, escaped_xml(title), mm * pattern.length, mm * pattern.width, joint(pattern));
+  out += scale_bar(box.left, box.bottom + 3.4 * letter, letter, bar_length(mm * pattern.length));
   return out + "</svg>\n";
 }
 
