@@ -13,7 +13,7 @@ PAGE = SCENES.parent / "docs/scene.schema.json"
 WRONG = [
     ("gravity: [0, 0, -1]", "gravity: [0, 0]", ["gravity"]),
     ("gravity: [0, 0, -1]", "gravity: [0, 0, down]", ["gravity", 2]),
-    ("gravity: [0, 0, -1]", "gravity: [0, 0, -1e+7]", ["gravity", 2]),
+    ("gravity: [0, 0, -1]", "gravity: [0, 0, -1.0e+7]", ["gravity", 2]),
     ("gravity:", "gravitation:", []),
     ("ribbon: {length: 1, width: 0.1, segments: 12}", "", []),
     ("length: 1,", "", ["ribbon"]),
