@@ -29,6 +29,7 @@ clang-tidy          clang-tidy          test
 admesh              admesh              test
 python3-jsonschema  python3-jsonschema  test
 python3-yaml        python3-yaml        test
+python3-vtk9        python3-vtk9        test
 python3-matplotlib  python3-matplotlib  validation
 '
 
