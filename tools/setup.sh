@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
-# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py.
+# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py,
+# `tools/setup.sh nightly` for what tools/nightly.sh asks for beside these.
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
@@ -16,6 +17,7 @@ libyaml-cpp-dev     libyaml-cpp-dev     run
 nlohmann-json3-dev  nlohmann-json3-dev  run
 libcli11-dev        libcli11-dev        run
 libfmt-dev          libfmt-dev          run
+libpng-dev          libpng-dev          run
 libgtest-dev        libgtest-dev        run
 libbenchmark-dev    libbenchmark-dev    run
 node                nodejs              run
@@ -30,7 +32,12 @@ admesh              admesh              test
 python3-jsonschema  python3-jsonschema  test
 python3-yaml        python3-yaml        test
 python3-vtk9        python3-vtk9        test
+ffmpeg              ffmpeg              test
 python3-matplotlib  python3-matplotlib  validation
+blender             blender             nightly
+libc++-dev          libc++-dev          nightly
+libc++abi-dev       libc++abi-dev       nightly
+gcovr               gcovr               nightly
 '
 
 present() {
@@ -67,8 +74,8 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|test|validation) ;;
-  *) echo "usage: tools/setup.sh [run|test|validation]" >&2; exit 2 ;;
+  run|test|validation|nightly) ;;
+  *) echo "usage: tools/setup.sh [run|test|validation|nightly]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"

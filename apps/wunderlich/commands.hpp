@@ -33,6 +33,9 @@ struct ExportArguments {
   std::string format;
   std::string out;                  ///< empty: in the run folder, under the name `run` would give it
   std::optional<double> thickness;  ///< of a body to print [m]
+  std::string size, view, colour;   ///< of a picture; empty: as it is usual
+  std::optional<double> fps;        ///< of a film
+  std::optional<long> frame;        ///< of a still
 };
 
 int export_command(const ExportArguments& arguments);

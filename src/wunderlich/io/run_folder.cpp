@@ -19,6 +19,7 @@
 #include "wunderlich/io/svg.hpp"
 #include "wunderlich/io/three_mf.hpp"
 #include "wunderlich/io/vtp.hpp"
+#include "wunderlich/picture/film.hpp"
 
 namespace wunderlich::io {
 
@@ -68,6 +69,8 @@ std::vector<RenderedFile> render_patterns(const RunOutput& output, const std::st
   return files;
 }
 
+picture::Subject subject_of(const RunOutput& output) { return {output.frames, output.bodies, output.patterns}; }
+
 }  // namespace
 
 bool is_run_folder(const fs::path& folder) {
@@ -99,6 +102,11 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
       return render_patterns(output, stem.empty() ? "pattern" : stem);
     case Format::html:
       return {{(stem.empty() ? "report" : stem) + ".html", report_page(output)}};
+    case Format::png:
+      return {{(stem.empty() ? "picture" : stem) + ".png",
+               picture::png(picture::still(subject_of(output), output.picture))}};
+    case Format::mp4:
+      return {{(stem.empty() ? "film" : stem) + ".mp4", picture::film(subject_of(output), output.picture)}};
   }
   assert(false);
   return {};

@@ -10,6 +10,7 @@
 #include "wunderlich/base/frame.hpp"
 #include "wunderlich/base/summary.hpp"
 #include "wunderlich/io/checkpoint.hpp"
+#include "wunderlich/picture/style.hpp"
 
 namespace wunderlich::io {
 
@@ -24,6 +25,7 @@ struct RunOutput {
   std::vector<Body> bodies;           ///< obstacles
   std::vector<FlatPattern> patterns;  ///< of the final state, one a strip; at least one
   std::optional<double> thickness;    ///< of bodies to print [m]; without it that of each strip's material
+  picture::Style picture;             ///< how stills and films are drawn
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides
   Checkpoint checkpoint;

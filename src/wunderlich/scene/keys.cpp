@@ -299,9 +299,9 @@ const std::vector<Key> after_solver = {
      Type::choices,
      "",
      0,
-     8,
-     "[vtp, glb, svg, html]",
-     {"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html"},
+     10,
+     "[vtp, glb, svg, html, png]",
+     {"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html", "png", "mp4"},
      "Files to write beside the tables; `--formats` on the command line goes before it."},
 };
 
