@@ -72,7 +72,7 @@ void say_range(const io::RunOutput& output, io::Format format) {
   const bool energy = style.colour == picture::Colour::energy;
   std::cout << fmt::format("{}: {} {:.4g} ... red {:.4g}{}\n", picture::name(style.colour), energy ? "pale" : "blue",
                            energy ? 0 : -range, range,
-                           energy                                 ? " D/2 per m^2"
+                           energy                                 ? " D/2 per m^2, drawn by its root"
                            : style.colour == picture::Colour::eta ? ""
                                                                   : " 1/m");
 }

@@ -10,9 +10,9 @@ namespace wunderlich::picture {
 namespace {
 
 constexpr double field_of_view = 32 * std::numbers::pi / 180;
-constexpr double filled = 0.86;           // of the picture, at most
+constexpr double filled = 0.82;           // of the picture, at most
 constexpr double usual_azimuth = 0.5;     // rad
-constexpr double shadow_below = 0.03;     // room for it, of the radius
+constexpr double shadow_below = 0.05;     // room for it, of the radius
 constexpr double follow_beyond = 1.7;     // times the radius of the last frame
 constexpr double body_of_interest = 1.5;  // times the ribbon's radius
 

@@ -126,13 +126,18 @@ double range_of(const std::vector<const Frame*>& frames, Colour colour) {
     for (const double value : field_of(*frame, colour)) sizes.push_back(std::abs(value));
   }
   std::sort(sizes.begin(), sizes.end());
-  const double most = sizes[static_cast<std::size_t>(0.98 * static_cast<double>(sizes.size() - 1))];
+  const double below = colour == Colour::energy ? 0.9 : 0.98;
+  const double most = sizes[static_cast<std::size_t>(below * static_cast<double>(sizes.size() - 1))];
   return most > 0 ? most : sizes.back() > 0 ? sizes.back() : 1;
 }
 
-Eigen::Vector3f colour_of(double value, double range) {
+double share_of(double value, double range, Colour colour) {
+  return colour == Colour::energy ? std::sqrt(value / range) : value / range;
+}
+
+Eigen::Vector3f colour_of(double share) {
   const double last = static_cast<double>(stops.size() - 1);
-  const double at = 0.5 * last * (std::clamp(value / range, -1.0, 1.0) + 1);
+  const double at = 0.5 * last * (std::clamp(share, -1.0, 1.0) + 1);
   const auto k = static_cast<std::size_t>(std::min(last - 1, std::floor(at)));
   const auto mix = static_cast<float>(at - static_cast<double>(k));
   Eigen::Vector3f out;

@@ -17,10 +17,14 @@ Eigen::Vector3f linear_of(unsigned rgb);
 /// the principal curvature squared [1/m^2]. @eq Shen2015:3 (its integrand)
 std::vector<double> field_of(const Frame& frame, Colour colour);
 
-/// What most values stay below: all but two per cent, so that a spike does not wash out the rest. Above 0.
+/// What most values stay below, so that a spike does not wash out the rest: all but two per cent, and of energies,
+/// which gather at inflections, all but ten. Above 0.
 double range_of(const std::vector<const Frame*>& frames, Colour colour);
 
-/// Linear colour of a value: diverging, but for energies, which use the upper half.
-Eigen::Vector3f colour_of(double value, double range);
+/// The share of the range that a value is drawn at: of energies the root.
+double share_of(double value, double range, Colour colour);
+
+/// Linear colour of a share from -1, blue, to 1, red.
+Eigen::Vector3f colour_of(double share);
 
 }  // namespace wunderlich::picture

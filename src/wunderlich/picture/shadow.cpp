@@ -7,8 +7,8 @@ namespace wunderlich::picture {
 namespace {
 
 constexpr int texels = 2048;
-constexpr double half_size = 1.7;  // of the lit square, on the stage
-constexpr float bias = 0.004f;     // on the stage, along the light
+constexpr double least_half = 1, most_half = 4;  // of the lit square, on the stage
+constexpr float bias = 0.004f;                   // on the stage, along the light
 
 View axes_of(const Vec3& towards) {
   const Vec3 right = Vec3::UnitZ().cross(towards).normalized();
@@ -19,6 +19,11 @@ View axes_of(const Vec3& towards) {
 
 Shadow::Shadow(const std::vector<std::array<Vec3, 3>>& triangles)
     : axes_(axes_of(light)), height_(std::size_t{texels} * texels, std::numeric_limits<float>::lowest()) {
+  double half = least_half;
+  for (const auto& triangle : triangles) {
+    for (const Vec3& p : triangle) half = std::max({half, std::abs(p.dot(axes_.right)), std::abs(p.dot(axes_.up))});
+  }
+  per_unit_ = 0.5 * texels / std::min(1.05 * half, most_half);
   for (const auto& triangle : triangles) {
     const std::array<Point, 3> at{seen(triangle[0]), seen(triangle[1]), seen(triangle[2])};
     cover(at, {0, 0, texels, texels}, [&](int x, int y, const Weights& w) {
@@ -29,8 +34,7 @@ Shadow::Shadow(const std::vector<std::array<Vec3, 3>>& triangles)
 }
 
 Point Shadow::seen(const Vec3& p) const {
-  const double per_unit = 0.5 * texels / half_size;
-  return Vec3(0.5 * texels + per_unit * p.dot(axes_.right), 0.5 * texels + per_unit * p.dot(axes_.up),
+  return Vec3(0.5 * texels + per_unit_ * p.dot(axes_.right), 0.5 * texels + per_unit_ * p.dot(axes_.up),
               p.dot(axes_.towards))
       .cast<float>();
 }

@@ -23,6 +23,7 @@ class Shadow {
  private:
   Point seen(const Vec3& p) const;  // texel x, y and height towards the light
   View axes_;
+  double per_unit_ = 1;  // texels
   std::vector<float> height_;
 };
 
