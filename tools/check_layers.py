@@ -22,7 +22,7 @@ LAYERS = {
     "baseline": ["base", "math", "geometry", "contact", "constraint"],
     "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver", "baseline"],
     "picture": ["base"],
-    "io": ["base", "picture"],
+    "io": ["base"],
     "sweep": ["base", "geometry", "scene", "io"],
 }
 CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver", "baseline"]

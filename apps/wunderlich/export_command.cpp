@@ -62,8 +62,7 @@ std::size_t frame_of(long frame, std::size_t frames) {
 }
 
 /// What the colours mean.
-void say_range(const io::RunOutput& output, io::Format format) {
-  const picture::Style& style = output.picture;
+void say_range(const io::RunOutput& output, io::Format format, const picture::Style& style) {
   if (style.colour == picture::Colour::plain) return;
   std::vector<const Frame*> frames;
   for (const Frame& frame : output.frames) frames.push_back(&frame);
@@ -82,18 +81,17 @@ void say_range(const io::RunOutput& output, io::Format format) {
 int export_command(const ExportArguments& arguments) {
   const io::Format format = io::parse_format(arguments.format);
   const std::filesystem::path folder = arguments.run;
-  const picture::Style style = style_of(arguments, format);
+  picture::Style style = style_of(arguments, format);
   const StoredRun run = load_run(folder);
+  if (arguments.frame) style.frame = frame_of(*arguments.frame, run.progress.records.size());
   const std::filesystem::path summary = folder / io::summary_file;
-  io::RunOutput output = output_of(run, io::parse_summary(io::read_file(summary), summary.string()));
+  io::RunOutput output = output_of(run, io::parse_summary(io::read_file(summary), summary.string()), style);
   if (arguments.thickness) check_thickness(*arguments.thickness, format, output.patterns);
   output.thickness = arguments.thickness;
-  output.picture = style;
-  if (arguments.frame) output.picture.frame = frame_of(*arguments.frame, output.frames.size());
   if (!arguments.out.empty()) {
     io::write_format(arguments.out, format, output);
     std::cout << arguments.out << "\n";
-    say_range(output, format);
+    say_range(output, format, style);
     return done;
   }
   for (const auto& [name, bytes] : io::render(format, output)) {
@@ -103,7 +101,7 @@ int export_command(const ExportArguments& arguments) {
     // One line a format, not one a frame.
     if (file.parent_path() == folder) std::cout << file.string() << "\n";
   }
-  say_range(output, format);
+  say_range(output, format, style);
   return done;
 }
 

@@ -7,6 +7,7 @@
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/run_folder.hpp"
+#include "wunderlich/picture/film.hpp"
 #include "wunderlich/report/report_template.hpp"
 #include "wunderlich/scene/read.hpp"
 
@@ -114,6 +115,8 @@ std::vector<io::Parameter> parameters_of(const scene::Scene& scene) {
   return list;
 }
 
+picture::Subject subject_of(const io::RunOutput& output) { return {output.frames, output.bodies, output.patterns}; }
+
 }  // namespace
 
 io::Checkpoint to_checkpoint(const StoredRun& run) {
@@ -147,7 +150,7 @@ StoredRun load_run(const std::filesystem::path& folder) {
   return from_checkpoint(io::read_checkpoint(file), file.string());
 }
 
-io::RunOutput output_of(const StoredRun& run, const Summary& summary) {
+io::RunOutput output_of(const StoredRun& run, const Summary& summary, const picture::Style& style) {
   io::RunOutput output;
   output.title = run.scene.title;
   output.summary = summary;
@@ -163,6 +166,8 @@ io::RunOutput output_of(const StoredRun& run, const Summary& summary) {
   output.scene_text = run.scene.resolved;
   output.checkpoint = to_checkpoint(run);
   output.report_template = report::report_template();
+  output.png = [style](const io::RunOutput& drawn) { return picture::png(picture::still(subject_of(drawn), style)); };
+  output.mp4 = [style](const io::RunOutput& drawn) { return picture::film(subject_of(drawn), style); };
   return output;
 }
 

@@ -6,6 +6,7 @@
 
 #include "wunderlich/io/checkpoint.hpp"
 #include "wunderlich/io/run_output.hpp"
+#include "wunderlich/picture/style.hpp"
 #include "wunderlich/scene/run.hpp"
 
 namespace wunderlich::app {
@@ -25,7 +26,7 @@ StoredRun from_checkpoint(const io::Checkpoint& checkpoint, const std::string& o
 /// The run kept in a run folder. Throws InputError if the folder is none.
 StoredRun load_run(const std::filesystem::path& folder);
 
-/// Everything that the run folder and the exports are made from.
-io::RunOutput output_of(const StoredRun& run, const Summary& summary);
+/// Everything that the run folder and the exports are made from; pictures in the style given.
+io::RunOutput output_of(const StoredRun& run, const Summary& summary, const picture::Style& style = {});
 
 }  // namespace wunderlich::app

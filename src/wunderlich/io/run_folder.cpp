@@ -19,7 +19,6 @@
 #include "wunderlich/io/svg.hpp"
 #include "wunderlich/io/three_mf.hpp"
 #include "wunderlich/io/vtp.hpp"
-#include "wunderlich/picture/film.hpp"
 
 namespace wunderlich::io {
 
@@ -69,8 +68,6 @@ std::vector<RenderedFile> render_patterns(const RunOutput& output, const std::st
   return files;
 }
 
-picture::Subject subject_of(const RunOutput& output) { return {output.frames, output.bodies, output.patterns}; }
-
 }  // namespace
 
 bool is_run_folder(const fs::path& folder) {
@@ -103,10 +100,9 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
     case Format::html:
       return {{(stem.empty() ? "report" : stem) + ".html", report_page(output)}};
     case Format::png:
-      return {{(stem.empty() ? "picture" : stem) + ".png",
-               picture::png(picture::still(subject_of(output), output.picture))}};
+      return {{(stem.empty() ? "picture" : stem) + ".png", output.png(output)}};
     case Format::mp4:
-      return {{(stem.empty() ? "film" : stem) + ".mp4", picture::film(subject_of(output), output.picture)}};
+      return {{(stem.empty() ? "film" : stem) + ".mp4", output.mp4(output)}};
   }
   assert(false);
   return {};

@@ -1,6 +1,7 @@
 /// Everything a finished, failed or interrupted run has to say.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +11,6 @@
 #include "wunderlich/base/frame.hpp"
 #include "wunderlich/base/summary.hpp"
 #include "wunderlich/io/checkpoint.hpp"
-#include "wunderlich/picture/style.hpp"
 
 namespace wunderlich::io {
 
@@ -25,11 +25,11 @@ struct RunOutput {
   std::vector<Body> bodies;           ///< obstacles
   std::vector<FlatPattern> patterns;  ///< of the final state, one a strip; at least one
   std::optional<double> thickness;    ///< of bodies to print [m]; without it that of each strip's material
-  picture::Style picture;             ///< how stills and films are drawn
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides
   Checkpoint checkpoint;
-  std::string_view report_template;  ///< the page without data; needed for Format::html only
+  std::string_view report_template;                       ///< the page without data; needed for Format::html only
+  std::function<std::string(const RunOutput&)> png, mp4;  ///< draw a still or a film; needed for these formats only
 };
 
 }  // namespace wunderlich::io
