@@ -51,6 +51,20 @@ def photograph_models(page: pathlib.Path, picture: pathlib.Path) -> None:
     shoot(page, page.read_text(encoding="utf-8").replace("<footer id=", style, 1), picture, (1400, 440))
 
 
+def draw_exports(program: str, images: pathlib.Path) -> None:
+    """The pictures of docs/exports.md."""
+    for name, scene, settings, export in (
+        ("export-energy.png", "twist-pi", [], ["--to", "png", "--colour", "energy", "--size", "1000x450"]),
+        ("export-pattern.svg", "moebius", ["ribbon.length=0.5", "ribbon.segments=100"], ["--to", "svg-pattern"]),
+    ):
+        with tempfile.TemporaryDirectory() as folder:
+            out = str(pathlib.Path(folder) / "run")
+            command = [program, "run", scene, "--out", out, "--formats", "none", "--quiet"]
+            subprocess.run(command + [word for setting in settings for word in ("--set", setting)], check=True)
+            subprocess.run([program, "export", out, *export, "--out", str(images / name)], check=True,
+                           stdout=subprocess.DEVNULL)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "build/release/wunderlich"))
@@ -68,6 +82,8 @@ def main() -> None:
                     raise SystemExit(f"{scene}: exit code {code}")
                 photograph_models(out / "report.html", images / f"compare-{scene}.png")
         return
+    if not options.scenes:
+        draw_exports(options.program, images)
     for scene in options.scenes or sorted(path.stem for path in (ROOT / "scenes").glob("*.yaml")):
         more = MORE.get(scene, {})
         with tempfile.TemporaryDirectory() as folder:
