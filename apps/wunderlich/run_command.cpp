@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -10,7 +9,6 @@
 #include "stored_run.hpp"
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/run_folder.hpp"
-#include "wunderlich/picture/film.hpp"
 #include "wunderlich/scene/read.hpp"
 #include "wunderlich/scene/run.hpp"
 
@@ -117,7 +115,7 @@ int run_command(const RunArguments& arguments) {
   const std::vector<io::Format> formats = formats_of(arguments, start.scene);
   if (start.outcome != scene::Outcome::interrupted) return report_finished(start, folder, arguments.quiet);
   io::require_writable(folder);
-  if (std::find(formats.begin(), formats.end(), io::Format::mp4) != formats.end()) picture::require_film({});
+  require_tools(formats);
 
   catch_interrupts();
   scene::RunResult result;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -148,6 +149,10 @@ StoredRun load_run(const std::filesystem::path& folder) {
   if (!io::is_run_folder(folder)) throw InputError(folder.string() + ": is not a run folder");
   const std::filesystem::path file = folder / io::checkpoint_file;
   return from_checkpoint(io::read_checkpoint(file), file.string());
+}
+
+void require_tools(const std::vector<io::Format>& formats) {
+  if (std::find(formats.begin(), formats.end(), io::Format::mp4) != formats.end()) picture::require_film({});
 }
 
 io::RunOutput output_of(const StoredRun& run, const Summary& summary, const picture::Style& style) {

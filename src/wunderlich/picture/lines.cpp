@@ -2,20 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
+
+#include "wunderlich/picture/fields.hpp"
 
 namespace wunderlich::picture {
-
-namespace {
-
-const std::vector<double>* values_of(const Mesh& surface, std::string_view name) {
-  for (const PointField& field : surface.fields) {
-    if (field.name == name) return &field.values;
-  }
-  return nullptr;
-}
-
-}  // namespace
 
 std::vector<std::array<int, 2>> rim_edges(const Mesh& surface, const std::vector<FlatPattern>& strips) {
   std::map<std::array<int, 2>, int> seen;
@@ -25,14 +15,13 @@ std::vector<std::array<int, 2>> rim_edges(const Mesh& surface, const std::vector
       ++seen[{std::min(a, b), std::max(a, b)}];
     }
   }
-  const std::vector<double>* u = values_of(surface, "u");
-  const std::vector<double>* ribbon = values_of(surface, "ribbon");
+  const std::vector<double> u = values_of(surface, "u"), ribbon = values_of(surface, "ribbon");
   std::vector<std::array<int, 2>> edges;
   for (const auto& [edge, triangles] : seen) {
     if (triangles != 1) continue;
     const auto a = static_cast<std::size_t>(edge[0]), b = static_cast<std::size_t>(edge[1]);
-    const std::size_t strip = ribbon == nullptr ? 0 : static_cast<std::size_t>((*ribbon)[a]);
-    const bool across = u != nullptr && (*u)[a] == (*u)[b];
+    const std::size_t strip = static_cast<std::size_t>(ribbon[a]);
+    const bool across = u[a] == u[b];
     if (!(across && strips[strip].loop)) edges.push_back(edge);
   }
   return edges;

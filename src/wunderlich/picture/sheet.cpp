@@ -1,6 +1,7 @@
 #include "wunderlich/picture/sheet.hpp"
 
 #include "wunderlich/picture/colour.hpp"
+#include "wunderlich/picture/fields.hpp"
 #include "wunderlich/picture/lines.hpp"
 
 namespace wunderlich::picture {
@@ -23,10 +24,7 @@ void add_ribbon(const Subject& subject, const Style& style, const Plan& plan, st
   const Fit& fit = plan.fits[k];
   std::vector<double> field;
   if (style.colour != Colour::plain) field = field_of(frame, style.colour);
-  std::vector<double> ribbon(mesh.points.size(), 0.0);
-  for (const PointField& values : mesh.fields) {
-    if (values.name == "ribbon") ribbon = values.values;
-  }
+  const std::vector<double> ribbon = values_of(mesh, "ribbon");
   for (const auto& points : mesh.triangles) {
     std::array<Triangle, 2> sides;
     for (std::size_t c = 0; c < 3; ++c) {
