@@ -6,6 +6,8 @@ elseif(WUNDERLICH_APP OR WUNDERLICH_TESTS OR WUNDERLICH_FUZZ OR WUNDERLICH_PYTHO
   find_package(yaml-cpp 0.7 REQUIRED)
   find_package(nlohmann_json 3.11 REQUIRED)
   find_package(fmt 9 REQUIRED)
+  find_package(PNG 1.6 REQUIRED)
+  find_package(Threads REQUIRED)
 endif()
 if(WUNDERLICH_APP)
   find_package(CLI11 2.1 REQUIRED)

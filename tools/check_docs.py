@@ -23,6 +23,9 @@ HEADING = re.compile(r"^#+\s+(.*)$", re.M)
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.M | re.S)
 
 
+GENERATED = {"scene-format.md": ["schema"], "scene.schema.json": ["schema", "--json"]}
+
+
 def pages(root):
     return sorted(list(root.glob("*.md")) + list((root / "docs").rglob("*.md")))
 
@@ -117,8 +120,18 @@ def check_scenes_listed(root):
     yield from (f"README.md:1: scene '{name}' is in the table but not shipped" for name in sorted(listed - shipped))
 
 
+def check_generated(root, program):
+    """Pages that the program writes are what it would write now."""
+    for name, arguments in GENERATED.items():
+        page = root / "docs" / name
+        if page.exists():
+            result = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=60, check=False)
+            if result.stdout != page.read_text(encoding="utf-8"):
+                yield f"docs/{name}:1: not up to date; write it with: build/release/wunderlich {' '.join(arguments)}"
+
+
 def check(root, program=None):
-    faults, ran = [], 0
+    faults, ran = list(check_generated(root, program)) if program else [], 0
     for page in pages(root):
         text = page.read_text(encoding="utf-8")
         faults += check_links(root, page, text)
@@ -140,6 +153,7 @@ PLANTED = [
     ("docs/a.md", "## C, d\n```sh\ntools/nix.sh\n```\n", "no script tools/nix.sh"),
     ("docs/a.md", "## C, d\n```sh\nbuild/release/wunderlich x\n```\n", "exit code 1"),
     ("docs/a.md", "## C, d\n```yaml\nribbon: 1\n```\n", "not a valid scene"),
+    ("docs/scene.schema.json", "{}", "docs/scene.schema.json:1: not up to date"),
     ("scenes/two.yaml", "", "scene 'two' is shipped but not in the table"),
     ("README.md", "## Scenes\n| `one` |\n| `six` | ?\n", "scene 'six' is in the table but not shipped"),
 ]

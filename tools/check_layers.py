@@ -21,6 +21,7 @@ LAYERS = {
     "solver": ["base", "math", "geometry", "energy", "contact", "constraint"],
     "baseline": ["base", "math", "geometry", "contact", "constraint"],
     "scene": ["base", "math", "geometry", "energy", "contact", "constraint", "solver", "baseline"],
+    "picture": ["base"],
     "io": ["base"],
     "sweep": ["base", "geometry", "scene", "io"],
 }
@@ -29,6 +30,7 @@ CORE = ["base", "math", "contact", "geometry", "energy", "constraint", "solver",
 THIRD_PARTY = {layer: ["Eigen/"] for layer in CORE}
 THIRD_PARTY["scene"] = ["Eigen/", "yaml-cpp/", "fmt/"]
 THIRD_PARTY["sweep"] = ["nlohmann/", "fmt/", "fcntl.h", "poll.h", "sys/", "unistd.h"]  # processes, locks
+THIRD_PARTY["picture"] = ["Eigen/", "fmt/", "png.h", "fcntl.h", "spawn.h", "sys/", "unistd.h"]  # PNG, ffmpeg
 THIRD_PARTY["io"] = ["Eigen/", "nlohmann/", "fmt/", "fcntl.h", "unistd.h"]  # POSIX: files that survive a power cut
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

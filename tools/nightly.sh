@@ -5,6 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh test
+tools/setup.sh nightly
 
 echo "nightly: everything that ./test does"
 ./test
@@ -15,6 +16,13 @@ tools/setup.sh validation
 
 echo "nightly: clang-tidy on everything"
 tools/tidy.sh
+
+echo "nightly: Blender imports the clips and point caches of runs"
+for scene in moebius paper-chain drape-cylinder; do
+  build/release/wunderlich run "$scene" --quiet --formats vtp,glb,pc2 --out "build/blender/$scene" --set output.frames=20 \
+    --set solver.duration=0.5
+  blender --background --factory-startup --python-exit-code 1 --python tests/nightly/blender_reads.py -- "build/blender/$scene"
+done
 
 echo "nightly: the tests under every check of the sanitizers"
 cmake --preset sanitize-all
@@ -44,13 +52,11 @@ echo "nightly: 30 minutes of fuzzing"
 tools/fuzz.sh 1800
 
 echo "nightly: the core with clang and libc++, as browsers will compile it"
-dpkg-query -W libc++-dev >/dev/null 2>&1 || apt-get install -y -qq libc++-dev libc++abi-dev
 cmake -S . -B build/libcxx -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-stdlib=libc++ \
   -DWUNDERLICH_APP=OFF -DWUNDERLICH_TESTS=OFF -DWUNDERLICH_BENCH=OFF -DWUNDERLICH_WARNINGS_AS_ERRORS=ON
 cmake --build build/libcxx
 
 echo "nightly: coverage"
-command -v gcovr >/dev/null || apt-get install -y -qq gcovr
 cmake --preset coverage
 cmake --build --preset coverage
 ctest --preset coverage -j "$(nproc)"

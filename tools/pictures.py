@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Draws docs/images/*.png: runs the shipped scenes and photographs the 3D view of their report pages.
+"""Draws docs/images/*.png: the shipped scenes by the program itself, comparisons of models as their page has them.
 
-usage: tools/pictures.py [--program PATH] [--compare] [SCENE...]     needs the distribution's chromium, which draws in software
+usage: tools/pictures.py [--program PATH] [SCENE...]             needs nothing but the program
+       tools/pictures.py [--program PATH] --compare [SCENE...]   photographs the page with the distribution's chromium
 """
 import argparse
 import json
@@ -10,9 +11,8 @@ import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SIZE = (1200, 750)
 
-# Keys that the page understands, from its usual view, and what the program is asked beside the scene's name.
+# What the program is asked beside the scene's name, and the export beside the format.
 MORE = {
     "moebius": {"set": ["ribbon.segments=100"]},
     "coil": {"set": ["solver.duration=2"]},  # where it lies loosened
@@ -23,30 +23,11 @@ MORE = {
     "twist-release-soft": {"set": ["solver.duration=0.3"]},
     "slide-cylinder": {"set": ["solver.duration=0.4"]},
     "swing": {"set": ["solver.duration=0.72"]},
-    "knot": {"set": ["solver.duration=4.2"], "keys": ["ArrowUp"] * 9 + ["+"] * 18},
+    "knot": {"set": ["solver.duration=4.2"], "view": "28.65,80"},
     "whip": {"set": ["solver.duration=0.6"]},
 }
 
 COMPARED = ["twist-pi", "twist-2pi", "twist-and-shorten"]  # the paper's Fig. 8, and the case of other programs
-
-STAGE = """<style>
-  .tools, .player, .legend, .top, .figures, .card, footer, #warnings { display: none !important }
-  .stage, .view { position: fixed !important; inset: 0; width: 100vw !important; height: 100vh !important;
-                  border: 0 !important; border-radius: 0 !important }
-  .view { background: #f6f3ec !important }
-  .view::before, .view::after { display: none !important }
-</style>
-<script>addEventListener('load', () => setTimeout(() => {
-  const view = document.getElementById('view');
-  for (const key of %s) view.dispatchEvent(new KeyboardEvent('keydown', { key }));
-  document.getElementById('rulings').click();
-}, 500));</script>
-<footer id="""
-
-
-def photograph(page: pathlib.Path, picture: pathlib.Path, keys: list[str]) -> None:
-    text = page.read_text(encoding="utf-8").replace("<footer id=", STAGE % json.dumps(keys), 1)
-    shoot(page, text, picture, SIZE)
 
 
 def shoot(page: pathlib.Path, text: str, picture: pathlib.Path, size: tuple[int, int]) -> None:
@@ -70,6 +51,20 @@ def photograph_models(page: pathlib.Path, picture: pathlib.Path) -> None:
     shoot(page, page.read_text(encoding="utf-8").replace("<footer id=", style, 1), picture, (1400, 440))
 
 
+def draw_exports(program: str, images: pathlib.Path) -> None:
+    """The pictures of docs/exports.md."""
+    for name, scene, settings, export in (
+        ("export-energy.png", "twist-pi", [], ["--to", "png", "--colour", "energy", "--size", "1000x450"]),
+        ("export-pattern.svg", "moebius", ["ribbon.length=0.5", "ribbon.segments=100"], ["--to", "svg-pattern"]),
+    ):
+        with tempfile.TemporaryDirectory() as folder:
+            out = str(pathlib.Path(folder) / "run")
+            command = [program, "run", scene, "--out", out, "--formats", "none", "--quiet"]
+            subprocess.run(command + [word for setting in settings for word in ("--set", setting)], check=True)
+            subprocess.run([program, "export", out, *export, "--out", str(images / name)], check=True,
+                           stdout=subprocess.DEVNULL)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "build/release/wunderlich"))
@@ -87,18 +82,22 @@ def main() -> None:
                     raise SystemExit(f"{scene}: exit code {code}")
                 photograph_models(out / "report.html", images / f"compare-{scene}.png")
         return
+    if not options.scenes:
+        draw_exports(options.program, images)
     for scene in options.scenes or sorted(path.stem for path in (ROOT / "scenes").glob("*.yaml")):
         more = MORE.get(scene, {})
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / scene
-            command = [options.program, "run", scene, "--out", str(out), "--formats", "html", "--quiet"]
+            command = [options.program, "run", scene, "--out", str(out), "--formats", "none", "--quiet"]
             for setting in more.get("set", []):
                 command += ["--set", setting]
             subprocess.run(command, check=True)
             picture = images / f"{scene}.png"
-            photograph(out / "report.html", picture, more.get("keys", []))
+            view = ["--view", more["view"]] if "view" in more else []
+            subprocess.run([options.program, "export", str(out), "--to", "png", "--out", str(picture), *view], check=True,
+                           stdout=subprocess.DEVNULL)
             energy = json.loads((out / "summary.json").read_text())["energy"]["normalized"]
-            print(f"{scene}: V l/(D w) = {energy:.6g}, {picture.stat().st_size // 1000} kB")
+            print(f"{scene}: V l/(D w) = {energy:.6g}, {picture.stat().st_size // 1000} kB", flush=True)
 
 
 if __name__ == "__main__":

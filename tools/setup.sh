@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
 # `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py,
-# `tools/setup.sh python` for the Python package, `tools/setup.sh web` for the page in the browser.
+# `tools/setup.sh python` for the Python package, `tools/setup.sh web` for the page in the browser,
+# `tools/setup.sh nightly` for what tools/nightly.sh asks for beside these.
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
@@ -17,6 +18,7 @@ libyaml-cpp-dev     libyaml-cpp-dev     run
 nlohmann-json3-dev  nlohmann-json3-dev  run
 libcli11-dev        libcli11-dev        run
 libfmt-dev          libfmt-dev          run
+libpng-dev          libpng-dev          run
 libgtest-dev        libgtest-dev        run
 libbenchmark-dev    libbenchmark-dev    run
 node                nodejs              run
@@ -35,9 +37,17 @@ python3-numpy       python3-numpy       python,test
 python3-pip         python3-pip         python,test
 python3-venv        python3-venv        python,test
 mypy                mypy                test
+python3-jsonschema  python3-jsonschema  test
+python3-yaml        python3-yaml        test
+python3-vtk9        python3-vtk9        test
+ffmpeg              ffmpeg              test
 em++                emscripten          web,test
 xz                  xz-utils            web,test
 chromium            chromium            test
+blender             blender             nightly
+libc++-dev          libc++-dev          nightly
+libc++abi-dev       libc++abi-dev       nightly
+gcovr               gcovr               nightly
 '
 
 present() {
@@ -74,8 +84,8 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|web|test|validation|python) ;;
-  *) echo "usage: tools/setup.sh [run|web|test|validation|python]" >&2; exit 2 ;;
+  run|web|test|validation|python|nightly) ;;
+  *) echo "usage: tools/setup.sh [run|web|test|validation|python|nightly]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"

@@ -32,8 +32,8 @@ int scenes_command() {
   return done;
 }
 
-int schema_command() {
-  std::cout << scene::schema_markdown();
+int schema_command(bool json) {
+  std::cout << (json ? scene::schema_json() : scene::schema_markdown());
   return done;
 }
 

@@ -25,14 +25,17 @@ int check_command(const std::string& scene, const std::vector<std::string>& set)
 /// The shipped scenes, a line each.
 int scenes_command();
 
-/// docs/scene-format.md
-int schema_command();
+/// docs/scene-format.md, or docs/scene.schema.json
+int schema_command(bool json);
 
 struct ExportArguments {
   std::string run;  ///< a run folder
   std::string format;
   std::string out;                  ///< empty: in the run folder, under the name `run` would give it
   std::optional<double> thickness;  ///< of a body to print [m]
+  std::string size, view, colour;   ///< of a picture; empty: as it is usual
+  std::optional<double> fps;        ///< of a film
+  std::optional<long> frame;        ///< of a still
 };
 
 int export_command(const ExportArguments& arguments);

@@ -30,7 +30,7 @@ void add_run(CLI::App& program, RunArguments& arguments, int& exit_code) {
   add_set(*command, arguments.set);
   command
       ->add_option("--formats", arguments.formats,
-                   "vtp,glb,pc2,obj,stl,3mf,svg,html or none; default: the scene's, vtp,glb,svg,html")
+                   "vtp,glb,pc2,obj,stl,3mf,svg,html,png,mp4 or none; default: the scene's, vtp,glb,svg,html,png")
       ->type_name("LIST");
   command->add_flag("--resume", arguments.resume, "Go on with an interrupted run, exactly as if it had not been");
   command->add_flag("--quiet", arguments.quiet, "Say nothing but errors");
@@ -50,8 +50,9 @@ void add_export(CLI::App& program, ExportArguments& arguments, int& exit_code) {
   CLI::App* command = program.add_subcommand("export", "Write a finished or interrupted run in another format");
   command->add_option("run", arguments.run, "A run folder")->required()->type_name("RUN");
   command
-      ->add_option("--to", arguments.format,
-                   io::format_names() + "; svg-pattern is svg, stl and 3mf are bodies to print")
+      ->add_option(
+          "--to", arguments.format,
+          io::format_names() + "; svg-pattern is svg, stl and 3mf are bodies to print, png a still, mp4 a film")
       ->required()
       ->type_name("FORMAT");
   command
@@ -59,6 +60,20 @@ void add_export(CLI::App& program, ExportArguments& arguments, int& exit_code) {
                    "Of the body, for stl, 3mf and obj; default: ribbon.thickness, or a fiftieth of the width, for obj "
                    "the bare surface")
       ->type_name("METRES");
+  command->add_option("--size", arguments.size, "Of a picture in pixels, for png and mp4; default 1200x750")
+      ->type_name("WxH");
+  command
+      ->add_option("--view", arguments.view,
+                   "Where the eye is, in degrees, for png and mp4: 0,0 looks along +y with z up; default: from where "
+                   "most of the shape is seen")
+      ->type_name("AZIMUTH,ELEVATION");
+  command
+      ->add_option("--colour", arguments.colour,
+                   "Of the surface, for png and mp4: plain, kappa, tau, eta or energy; default plain")
+      ->type_name("FIELD");
+  command->add_option("--frame", arguments.frame, "The recorded frame that a png shows, from 0; default: the last")
+      ->type_name("N");
+  command->add_option("--fps", arguments.fps, "Recorded frames a second of an mp4; default 25")->type_name("RATE");
   command->add_option("--out", arguments.out, "The file to write; default: in the run folder")->type_name("FILE");
   command->callback([&] { exit_code = export_command(arguments); });
 }
@@ -140,7 +155,9 @@ int run_program(int argc, char** argv) {
   add_sweep(program, swept, sweep_folder, exit_code);
   add_compare(program, compared, exit_code);
   CLI::App* schema = program.add_subcommand("schema", "Print the scene format as Markdown");
-  schema->callback([&] { exit_code = schema_command(); })->group("");
+  bool json = false;
+  schema->add_flag("--json", json, "As a JSON Schema, for editors");
+  schema->callback([&] { exit_code = schema_command(json); });
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -116,6 +116,7 @@ int run_command(const RunArguments& arguments) {
   const std::vector<io::Format> formats = formats_of(arguments, start.scene);
   if (start.outcome != scene::Outcome::interrupted) return report_finished(start, folder, arguments.quiet);
   io::require_writable(folder);
+  require_tools(formats);
 
   catch_interrupts();
   scene::RunResult result;

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/run_folder.hpp"
+#include "wunderlich/picture/film.hpp"
 #include "wunderlich/scene/read.hpp"
 
 namespace wunderlich::app {
@@ -113,6 +115,8 @@ std::vector<io::Parameter> parameters_of(const scene::Scene& scene) {
   return list;
 }
 
+picture::Subject subject_of(const io::RunOutput& output) { return {output.frames, output.bodies, output.patterns}; }
+
 }  // namespace
 
 io::Checkpoint to_checkpoint(const StoredRun& run) {
@@ -146,7 +150,12 @@ StoredRun load_run(const std::filesystem::path& folder) {
   return from_checkpoint(io::read_checkpoint(file), file.string());
 }
 
-io::RunOutput output_of(const StoredRun& run, const Summary& summary, std::string_view report_template) {
+void require_tools(const std::vector<io::Format>& formats) {
+  if (std::find(formats.begin(), formats.end(), io::Format::mp4) != formats.end()) picture::require_film({});
+}
+
+io::RunOutput output_of(const StoredRun& run, const Summary& summary, std::string_view report_template,
+                        const picture::Style& style) {
   io::RunOutput output;
   output.title = run.scene.title;
   output.summary = summary;
@@ -162,6 +171,8 @@ io::RunOutput output_of(const StoredRun& run, const Summary& summary, std::strin
   output.scene_text = run.scene.resolved;
   output.checkpoint = to_checkpoint(run);
   output.report_template = report_template;
+  output.png = [style](const io::RunOutput& drawn) { return picture::png(picture::still(subject_of(drawn), style)); };
+  output.mp4 = [style](const io::RunOutput& drawn) { return picture::film(subject_of(drawn), style); };
   return output;
 }
 

@@ -77,12 +77,12 @@ int jobs_of(const SweepArguments& arguments) {
 
 /// Writes the run folder that `keep` asks for.
 sweep::Keep keeper(const sweep::Sweep& sweep, const fs::path& folder) {
-  return [formats = sweep.keep, folder](const scene::Scene& scene, scene::RunResult& result, const std::string& key) {
-    std::vector<io::Format> list;
-    list.reserve(formats.size());
-    for (const std::string& word : formats) list.push_back(io::parse_format(word));
+  std::vector<io::Format> formats;
+  for (const std::string& word : sweep.keep) formats.push_back(io::parse_format(word));
+  require_tools(formats);
+  return [formats, folder](const scene::Scene& scene, scene::RunResult& result, const std::string& key) {
     const StoredRun run{scene, std::move(result.progress), result.outcome};
-    io::write_run_folder(folder / "runs" / key, output_of(run, result.summary, report::report_template()), list);
+    io::write_run_folder(folder / "runs" / key, output_of(run, result.summary, report::report_template()), formats);
   };
 }
 

@@ -56,7 +56,8 @@ class Export(ProgramTest):
     def test_writes_beside_the_run_by_default(self):
         for name, files in {"obj": ["ribbon.obj"], "glb": ["ribbon.glb"], "vtp": ["ribbon.pvd"], "pc2": ["ribbon.pc2"],
                             "svg": ["pattern.svg"], "svg-pattern": ["pattern.svg"], "html": ["report.html"],
-                            "stl": ["ribbon.stl"], "3mf": ["ribbon.3mf"]}.items():
+                            "stl": ["ribbon.stl"], "3mf": ["ribbon.3mf"],
+                            "png": ["picture.png"], "mp4": ["film.mp4"]}.items():
             result = self.expect(0, "export", "run", "--to", name)
             for file in files:
                 self.assertIn(file, result.stdout)
@@ -69,11 +70,11 @@ class Export(ProgramTest):
         self.assertIn("\nf ", (self.folder / "there.obj").read_text())
 
     def test_gives_what_the_run_would_have_written(self):
-        self.expect(0, "run", "strip.yaml", "--out", "whole", "--formats", "glb,vtp,svg", "--quiet")
-        for name in ("glb", "vtp", "svg"):
+        self.expect(0, "run", "strip.yaml", "--out", "whole", "--formats", "glb,vtp,svg,png", "--quiet")
+        for name in ("glb", "vtp", "svg", "png"):
             self.expect(0, "export", "run", "--to", name)
         whole, exported = self.tree("whole"), self.tree("run")
-        compared = [path for path in whole if path.endswith((".glb", ".vtp", ".pvd", ".svg"))]
+        compared = [path for path in whole if path.endswith((".glb", ".vtp", ".pvd", ".svg", ".png"))]
         self.assertGreater(len(compared), 3)
         for path in compared:
             self.assertEqual(whole[path], exported.get(path), path)

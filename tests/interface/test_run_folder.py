@@ -13,7 +13,8 @@ class RunFolder(ProgramTest):
         result = self.expect(0, "run", "strip.yaml")
         self.assertIn("out/strip", result.stdout)
         names = {path.name for path in (self.folder / "out/strip").iterdir()}
-        self.assertEqual(names, ALWAYS | {"ribbon.pvd", "frames", "ribbon.glb", "pattern.svg", "report.html"})
+        self.assertEqual(names, ALWAYS | {"ribbon.pvd", "frames", "ribbon.glb", "pattern.svg", "report.html",
+                                         "picture.png"})
         self.assertEqual({path.name for path in (self.folder / "out").iterdir()}, {"strip"}, "left-overs beside the run")
 
     def test_formats_of_the_command_line_and_of_the_scene(self):

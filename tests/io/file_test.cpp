@@ -54,12 +54,13 @@ TEST(Formats, AreParsedFromAList) {
   EXPECT_EQ(parse_formats("svg, html,svg"), (std::vector<Format>{Format::svg, Format::html}));
   EXPECT_EQ(parse_formats("svg-pattern"), std::vector<Format>{Format::svg});
   EXPECT_TRUE(parse_formats("none").empty());
-  EXPECT_EQ(parse_formats("vtp,glb,pc2,obj,stl,3mf,svg,html").size(), 8u);
-  for (const Format format : parse_formats("vtp,glb,pc2,obj,stl,3mf,svg,html"))
+  EXPECT_EQ(parse_formats("vtp,glb,pc2,obj,stl,3mf,svg,html,png,mp4").size(), 10u);
+  for (const Format format : parse_formats("vtp,glb,pc2,obj,stl,3mf,svg,html,png,mp4"))
     EXPECT_EQ(parse_format(name(format)), format);
   for (const char* bad : {"", "vtp,", "VTP", "step", "none,vtp"}) {
-    EXPECT_NE(input_error([&] { parse_formats(bad); }).find("allowed are vtp, glb, pc2, obj, stl, 3mf, svg, html"),
-              std::string::npos)
+    EXPECT_NE(
+        input_error([&] { parse_formats(bad); }).find("allowed are vtp, glb, pc2, obj, stl, 3mf, svg, html, png, mp4"),
+        std::string::npos)
         << bad;
   }
 }

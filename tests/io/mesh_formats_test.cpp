@@ -194,7 +194,7 @@ TEST(PatternSvg, IsTrueToScaleAndSortsTheFolds) {
   EXPECT_NE(file.find("<title>a &lt; b &amp; c</title>"), std::string::npos);
   EXPECT_NE(file.find("points=\"0.0000,-20.0000 300.0000,-20.0000 300.0000,20.0000 0.0000,20.0000 \""),
             std::string::npos);
-  const std::size_t valley = file.find("<g id=\"valley\">"), mountain = file.find("<g id=\"mountain\">");
+  const std::size_t valley = file.find("<g id=\"valley\""), mountain = file.find("<g id=\"mountain\"");
   const std::size_t first =
       file.find("x1=\"90.0000\" y1=\"-20.0000\" x2=\"110.0000\" y2=\"20.0000\" opacity=\"1.000\"");
   const std::size_t second =

@@ -12,14 +12,16 @@ namespace wunderlich::io {
 
 namespace {
 
-constexpr std::array<std::pair<Format, std::string_view>, 8> names{{{Format::vtp, "vtp"},
-                                                                    {Format::glb, "glb"},
-                                                                    {Format::pc2, "pc2"},
-                                                                    {Format::obj, "obj"},
-                                                                    {Format::stl, "stl"},
-                                                                    {Format::mf3, "3mf"},
-                                                                    {Format::svg, "svg"},
-                                                                    {Format::html, "html"}}};
+constexpr std::array<std::pair<Format, std::string_view>, 10> names{{{Format::vtp, "vtp"},
+                                                                     {Format::glb, "glb"},
+                                                                     {Format::pc2, "pc2"},
+                                                                     {Format::obj, "obj"},
+                                                                     {Format::stl, "stl"},
+                                                                     {Format::mf3, "3mf"},
+                                                                     {Format::svg, "svg"},
+                                                                     {Format::html, "html"},
+                                                                     {Format::png, "png"},
+                                                                     {Format::mp4, "mp4"}}};
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);

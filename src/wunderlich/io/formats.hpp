@@ -16,6 +16,8 @@ enum class Format {
   mf3,   ///< `ribbon.3mf`: the same for newer slicers
   svg,   ///< `pattern.svg`: the strip unrolled flat
   html,  ///< `report.html`
+  png,   ///< `picture.png`: a still
+  mp4,   ///< `film.mp4`, by ffmpeg
 };
 
 /// Name as on the command line.

@@ -99,6 +99,10 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
       return render_patterns(output, stem.empty() ? "pattern" : stem);
     case Format::html:
       return {{(stem.empty() ? "report" : stem) + ".html", report_page(output)}};
+    case Format::png:
+      return {{(stem.empty() ? "picture" : stem) + ".png", output.png(output)}};
+    case Format::mp4:
+      return {{(stem.empty() ? "film" : stem) + ".mp4", output.mp4(output)}};
   }
   assert(false);
   return {};

@@ -22,7 +22,8 @@ bool is_run_folder(const std::filesystem::path& folder);
 /// run folder, it is a file, or the place cannot be written. To be called before the work. Creates missing parents.
 void require_writable(const std::filesystem::path& folder);
 
-/// The files of one format. `stem` replaces the name `ribbon` (`pattern` and `report` for svg and html).
+/// The files of one format. `stem` replaces the name `ribbon` (`pattern`, `report`, `picture`, `film` for svg, html,
+/// png, mp4).
 std::vector<RenderedFile> render(Format format, const RunOutput& output, const std::string& stem = "");
 
 /// Writes summary.json, centerline.csv, history.csv, the checkpoint and the formats. The folder appears under its

@@ -1,6 +1,7 @@
 /// Everything a finished, failed or interrupted run has to say.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,7 +28,8 @@ struct RunOutput {
   std::vector<Parameter> parameters;
   std::string scene_text;  ///< the scene file after all overrides
   Checkpoint checkpoint;
-  std::string_view report_template;  ///< the page without data; needed for Format::html only
+  std::string_view report_template;                       ///< the page without data; needed for Format::html only
+  std::function<std::string(const RunOutput&)> png, mp4;  ///< draw a still or a film; needed for these formats only
 };
 
 }  // namespace wunderlich::io

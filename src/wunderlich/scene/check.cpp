@@ -18,18 +18,6 @@ std::string join(const std::string& parent, const std::string& name) {
   return parent.empty() ? name : parent + "." + name;
 }
 
-/// Names of the keys directly below a pattern.
-std::vector<std::string> names_below(const std::string& pattern) {
-  const std::string prefix = pattern.empty() ? "" : pattern + ".";
-  std::vector<std::string> names;
-  for (const Key& key : keys()) {
-    if (key.path.compare(0, prefix.size(), prefix) != 0) continue;
-    const std::string name = key.path.substr(prefix.size());
-    if (name.find('.') == std::string::npos && name != "*") names.push_back(name);
-  }
-  return names;
-}
-
 /// A key whose last part is `name`, wherever it belongs.
 std::string elsewhere(const std::string& name) {
   for (const Key& key : keys()) {
@@ -172,6 +160,17 @@ std::string range(const Key& key) {
 }
 
 }  // namespace
+
+std::vector<std::string> names_below(const std::string& pattern) {
+  const std::string prefix = pattern.empty() ? "" : pattern + ".";
+  std::vector<std::string> names;
+  for (const Key& key : keys()) {
+    if (key.path.compare(0, prefix.size(), prefix) != 0) continue;
+    const std::string name = key.path.substr(prefix.size());
+    if (name.find('.') == std::string::npos && name != "*") names.push_back(name);
+  }
+  return names;
+}
 
 std::string allowed(const Key& key) {
   switch (key.type) {

@@ -218,7 +218,7 @@ const std::vector<Key> before_solver = {
      far,
      "",
      {},
-     "Of a coil: 1/radius is its principal curvature. Required."},
+     "Of a coil: 1/radius is its principal curvature. Required there."},
     {"initial.slope", Type::number, "", -10, 10, "0", {}, "Of a coil: eta; the coil climbs when it is not 0."},
     {"initial.position",
      Type::vector,
@@ -299,9 +299,9 @@ const std::vector<Key> after_solver = {
      Type::choices,
      "",
      0,
-     8,
-     "[vtp, glb, svg, html]",
-     {"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html"},
+     10,
+     "[vtp, glb, svg, html, png]",
+     {"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html", "png", "mp4"},
      "Files to write beside the tables; `--formats` on the command line goes before it."},
 };
 

@@ -66,7 +66,7 @@ struct OutputOptions {
   int frames = 60;      ///< at most so many recorded frames
   int subdivision = 3;  ///< rendered strips per segment along the length (the paper's Fig. 6: 3)
   int across = 8;       ///< rendered quads across the width
-  std::vector<std::string> formats{"vtp", "glb", "svg", "html"};  ///< files beside the tables
+  std::vector<std::string> formats{"vtp", "glb", "svg", "html", "png"};  ///< files beside the tables
 };
 
 /// How the models beside the ribbon are built.

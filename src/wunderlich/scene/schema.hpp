@@ -31,7 +31,7 @@ struct Key {
   double high = 0;
   std::string fallback;  ///< as a file would write it; empty: none
   std::vector<std::string> choices;
-  std::string doc;
+  std::string doc;  ///< ends in "Required." if its map cannot do without
 };
 
 /// Every key, sections before their contents; and those below `obstacles` and `contact`, `solver`, and `compare`.
@@ -43,6 +43,9 @@ const std::vector<Key>& compare_keys();
 /// The key with this pattern, or null.
 const Key* find_key(const std::string& pattern);
 
+/// Names of the keys directly below a pattern; those at the top below "".
+std::vector<std::string> names_below(const std::string& pattern);
+
 /// Checks every value of the tree against the table: unknown keys, types, ranges, spelling. Throws InputError.
 void check_document(const Value& root);
 
@@ -51,6 +54,10 @@ std::string allowed(const Key& key);
 
 /// The scene format as a Markdown page: `docs/scene-format.md`.
 std::string schema_markdown();
+
+/// The same as a JSON Schema (draft 7) for editors: `docs/scene.schema.json`. It knows the keys, their types, ranges
+/// and which are required; what they mean to one another only the reader knows.
+std::string schema_json();
 
 /// Where a reader stands in the tree. `value` is null for an absent key.
 struct Cell {

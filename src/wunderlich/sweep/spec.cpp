@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kLargestFile = std::size_t{4} << 20, kMostAxes = 20, kMostCollected = 200;
 constexpr double kMostRuns = 1e7;
 const std::vector<std::string> kFields{"kappa", "tau", "eta", "x", "y", "z"};
-const std::vector<std::string> kFormats{"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html"};
+const std::vector<std::string> kFormats{"vtp", "glb", "pc2", "obj", "stl", "3mf", "svg", "html", "png", "mp4"};
 
 /// A shipped scene, a file beside the sweep, or the scene itself.
 void read_base(const Node& node, const std::string& folder, Sweep& sweep) {
