@@ -7,13 +7,13 @@
 A page's blocks run in order in one folder that looks like a fresh checkout with the program built:
 
 - `sh` runs, and every line must succeed; a `text` block under it is what it prints, `...` standing for anything. A
-  program of tests or benchmarks, which ./test runs or which take their time, is asked only whether it has what is named.
+  program of tests or benchmarks, which ./test runs or which take their time, is asked only if it has what is named.
 - `yaml` with a ribbon is a scene, with `axes` a sweep, else a part of a scene that is tried in one. `json` is read.
 - `cpp` compiles; `python` runs, all blocks of a page together.
 - A block whose first line is a comment that names a file, `# CMakeLists.txt`, is written to that file first.
 
 A block under `<!-- not run: REASON -->` is only looked at: its scripts and presets must exist. So is one that would
-install or serve something. Blocks of pages in ELSEWHERE are run by a test of their own.
+install, serve or change something. Blocks of pages in ELSEWHERE are run by a test of their own.
 """
 
 import argparse
@@ -32,7 +32,7 @@ FENCE = re.compile(r"(?:^<!-- not run: (?P<why>[^\n]+?) -->\n)?^```(?P<language>
 NAMED = re.compile(r"(?:#|//) ([\w./-]+\.\w+)\n")
 ELSEWHERE = {"docs/python.md": "tests/python/test_tutorial.py"}  # `python` blocks, and `text` under them
 UNSAFE = {r"\bpip3? (install|wheel)": "installs", r"^\./run --web": "serves", r"^\./test": "runs this",
-          r"^(sudo|apt)": "installs"}
+          r"^(sudo|apt)": "installs", r"^tools/(pictures|nightly|setup|fuzz)": "takes long, or changes the checkout"}
 SECONDS = 120  # that a block may take
 # Stands around a part of a scene that has no strip of its own.
 STRIP = "\nribbon: {length: 1, width: 0.1, segments: 20}\n"

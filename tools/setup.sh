@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
-# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py.
+# `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py,
+# `tools/setup.sh docs` for the pages as a site (`test` has that, too).
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
@@ -27,13 +28,17 @@ libclang-rt-14-dev  libclang-rt-14-dev  test
 clang-format        clang-format        test
 clang-tidy          clang-tidy          test
 admesh              admesh              test
+mkdocs              mkdocs              docs
+libjs-katex         libjs-katex         docs
+python3-pymdownx    python3-pymdownx    docs
+mkdocs-material     mkdocs-material     docs
 python3-matplotlib  python3-matplotlib  validation
 '
 
 present() {
   case $1 in
     ca-certificates.crt) [ -s /etc/ssl/certs/ca-certificates.crt ] ;;
-    lib*|python3-*|*-dev) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
+    lib*|python3-*|*-dev|mkdocs-material) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
     *) command -v "$1" >/dev/null ;;
   esac
 }
@@ -42,7 +47,7 @@ missing() {
   local probe package group
   while read -r probe package group; do
     [ -n "$probe" ] || continue
-    [ "$group" = run ] || [ "$group" = "$1" ] || continue
+    case $group in run|"$1") ;; docs) [ "$1" = test ] || continue ;; *) continue ;; esac
     present "$probe" || echo "$package"
   done <<<"$needs"
 }
@@ -64,8 +69,8 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|test|validation) ;;
-  *) echo "usage: tools/setup.sh [run|test|validation]" >&2; exit 2 ;;
+  run|test|validation|docs) ;;
+  *) echo "usage: tools/setup.sh [run|test|validation|docs]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"
