@@ -4,7 +4,8 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS wunderlich_core EXPORT wunderlich_targets ARCHIVE)
 install(DIRECTORY src/wunderlich ${PROJECT_BINARY_DIR}/generated/wunderlich TYPE INCLUDE
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "scene" EXCLUDE PATTERN "io" EXCLUDE PATTERN "picture" EXCLUDE)
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "scene" EXCLUDE PATTERN "io" EXCLUDE PATTERN "sweep" EXCLUDE
+  PATTERN "picture" EXCLUDE)
 install(EXPORT wunderlich_targets NAMESPACE wunderlich:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/wunderlich)
 
 file(WRITE ${PROJECT_BINARY_DIR}/wunderlich-config.cmake

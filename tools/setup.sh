@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing on a Debian 12 machine: `tools/setup.sh run` for building and running the program,
 # `tools/setup.sh test` for every check as well, `tools/setup.sh validation` for the figures of validation/run.py,
-# `tools/setup.sh python` for the Python package, `tools/setup.sh web` for the page in the browser,
-# `tools/setup.sh nightly` for what tools/nightly.sh asks for beside these.
+# `tools/setup.sh python` for the Python package, `tools/setup.sh web` for the page in the browser, `tools/setup.sh docs`
+# for the pages as a site (`test` has all these, too), `tools/setup.sh nightly` for what tools/nightly.sh asks for beside.
 # This file is the one list of what the project needs.
 # Does nothing, and asks for no rights, when everything is there.
 set -euo pipefail
@@ -44,6 +44,10 @@ ffmpeg              ffmpeg              test
 em++                emscripten          web,test
 xz                  xz-utils            web,test
 chromium            chromium            test
+mkdocs              mkdocs              docs,test
+libjs-katex         libjs-katex         docs,test
+python3-pymdownx    python3-pymdownx    docs,test
+mkdocs-material     mkdocs-material     docs,test
 blender             blender             nightly
 libc++-dev          libc++-dev          nightly
 libc++abi-dev       libc++abi-dev       nightly
@@ -53,7 +57,7 @@ gcovr               gcovr               nightly
 present() {
   case $1 in
     ca-certificates.crt) [ -s /etc/ssl/certs/ca-certificates.crt ] ;;
-    lib*|python3-*|*-dev) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
+    lib*|python3-*|*-dev|mkdocs-material) dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed' ;;
     *) command -v "$1" >/dev/null ;;
   esac
 }
@@ -84,8 +88,8 @@ install() {
 
 group=${1:-run}
 case $group in
-  run|web|test|validation|python|nightly) ;;
-  *) echo "usage: tools/setup.sh [run|web|test|validation|python|nightly]" >&2; exit 2 ;;
+  run|web|test|validation|python|docs|nightly) ;;
+  *) echo "usage: tools/setup.sh [run|web|test|validation|python|docs|nightly]" >&2; exit 2 ;;
 esac
 mapfile -t packages < <(missing "$group")
 [ ${#packages[@]} -eq 0 ] || install "${packages[@]}"

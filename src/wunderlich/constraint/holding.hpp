@@ -43,18 +43,21 @@ struct LoopClosure {};
 /// A frame carried to another tangent (a unit vector) by the smallest rotation.   @eq Shen2015:18
 Quat transported(const Quat& frame, const Vec3& tangent);
 
+/// How many scalar equations.
 int rows(const geometry::Ribbon& ribbon, const Pin& c);
 int rows(const geometry::Ribbon& ribbon, const FrameClamp&);
 int rows(const geometry::Ribbon& ribbon, const TangentTurn&);
 int rows(const geometry::Ribbon& ribbon, const EndRulings&);
 int rows(const geometry::Ribbon& ribbon, const LoopClosure&);
 
+/// Their values; `out` has `rows` entries.
 void residual(const geometry::Ribbon& ribbon, const Pin& c, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const FrameClamp& c, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const TangentTurn& c, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const EndRulings&, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const LoopClosure&, const geometry::State& state, ResidualRef out);
 
+/// Their derivatives in the chart of `geometry/chart.hpp`, from row `first_row` on.
 void add_jacobian(const geometry::Ribbon& ribbon, const Pin& c, const geometry::State& state, int first_row,
                   Triplets& out);
 void add_jacobian(const geometry::Ribbon& ribbon, const FrameClamp& c, const geometry::State& state, int first_row,
@@ -66,6 +69,7 @@ void add_jacobian(const geometry::Ribbon& ribbon, const EndRulings&, const geome
 void add_jacobian(const geometry::Ribbon& ribbon, const LoopClosure&, const geometry::State& state, int first_row,
                   Triplets& out);
 
+/// Second derivatives of the sum of multiplier times residual, in the chart.
 void add_hessian(const geometry::Ribbon& ribbon, const Pin& c, const geometry::State& state, MultiplierRef multiplier,
                  Triplets& out);
 void add_hessian(const geometry::Ribbon& ribbon, const FrameClamp& c, const geometry::State& state,

@@ -35,18 +35,21 @@ struct TorsionMatch {
 /// 1 - x >= 0 and 1 + x >= 0 per segment, x = w eta'/2: inequalities, two rows a segment.   @eq Shen2015:13
 struct RulingBound {};
 
+/// How many scalar equations.
 int rows(const geometry::Ribbon& ribbon, const Length&);
 int rows(const geometry::Ribbon& ribbon, const Parallel&);
 int rows(const geometry::Ribbon& ribbon, const Binormal&);
 int rows(const geometry::Ribbon& ribbon, const TorsionMatch&);
 int rows(const geometry::Ribbon& ribbon, const RulingBound&);
 
+/// Their values; `out` has `rows` entries.
 void residual(const geometry::Ribbon& ribbon, const Length&, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const Parallel&, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const Binormal& c, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const TorsionMatch& c, const geometry::State& state, ResidualRef out);
 void residual(const geometry::Ribbon& ribbon, const RulingBound&, const geometry::State& state, ResidualRef out);
 
+/// Their derivatives in the chart of `geometry/chart.hpp`, from row `first_row` on.
 void add_jacobian(const geometry::Ribbon& ribbon, const Length&, const geometry::State& state, int first_row,
                   Triplets& out);
 void add_jacobian(const geometry::Ribbon& ribbon, const Parallel&, const geometry::State& state, int first_row,
@@ -58,6 +61,7 @@ void add_jacobian(const geometry::Ribbon& ribbon, const TorsionMatch& c, const g
 void add_jacobian(const geometry::Ribbon& ribbon, const RulingBound&, const geometry::State& state, int first_row,
                   Triplets& out);
 
+/// Second derivatives of the sum of multiplier times residual, in the chart.
 void add_hessian(const geometry::Ribbon& ribbon, const Length&, const geometry::State& state, MultiplierRef multiplier,
                  Triplets& out);
 void add_hessian(const geometry::Ribbon& ribbon, const Parallel&, const geometry::State& state,

@@ -24,6 +24,7 @@ struct Motion {
   std::vector<PoseKey> keys;
 };
 
+/// Where a motion is at a time, its turn included, and the time of its last key.
 Pose pose_at(const Motion& motion, double time);
 double end_time(const Motion& motion);
 
@@ -64,6 +65,7 @@ struct Load {
   std::vector<LoadKey> keys;
 };
 
+/// Force and torque of a load at a time; `time` of the result is that time.
 LoadKey load_at(const Load& load, double time);
 
 /// A solid that the strip cannot enter, at rest or moving; its own frame follows `motion`.

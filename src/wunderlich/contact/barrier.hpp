@@ -17,6 +17,7 @@ struct BarrierSlopes {
   double first, second;
 };
 
+/// Those of `barrier_value`, of the same arguments; infinite with it.
 inline BarrierSlopes barrier_slopes(double d, double reach, double log) {
   const double less = d - reach, ratio = less / d;
   return {-less * (2 * log + ratio), -2 * log - ratio * (4 - ratio)};

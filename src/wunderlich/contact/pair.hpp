@@ -22,6 +22,7 @@ struct PairNearest {
   Vec4 weights;     ///< of the four points
 };
 
+/// Of the points of a pair; where several places are as near, one of them.
 PairNearest pair_nearest(PairKind kind, const PairPoints& x);
 
 /// Euclidean distance of the closed primitives [m], not signed. Finite for any finite points: triangles without area

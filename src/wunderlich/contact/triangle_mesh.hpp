@@ -37,6 +37,7 @@ FaultAt find_fault(const std::vector<Vec3>& vertices, const std::vector<std::arr
 /// Of triangles without a fault.
 TriangleMesh make_mesh(std::vector<Vec3> vertices, std::vector<std::array<int, 3>> triangles);
 
+/// A box in its own frame: eight vertices, twelve triangles.
 TriangleMesh mesh_of(const Box& box);
 
 /// The last piece of a cylinder before its end at z = half_length, or z = -half_length for side = -1, as a prism around

@@ -13,6 +13,7 @@ enum class Elastic {
 
 using geometry::StrainMeasure;
 
+/// Which elastic energy, of which strain; `taylor_order` is that of the truncated one.
 struct Model {
   Elastic elastic = Elastic::wunderlich;
   int taylor_order = 5;

@@ -29,6 +29,7 @@ struct Kinematics {
   std::vector<Fold<math::Four>> fold;
 };
 
+/// Positions and frames along a chain, from its base on; `kinematics` is resized as needed.
 void forward_kinematics(const Ribbon& ribbon, const Chain& chain, Kinematics& kinematics);
 
 /// The paper's coordinates of a chain; velocities zero.

@@ -20,6 +20,7 @@ namespace wunderlich::geometry {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
+/// Where r, eta of a node and theta of a segment begin in an increment, and how many entries it has.
 inline int r_index(int node) { return 7 * node; }
 inline int eta_index(int node) { return 7 * node + 3; }
 inline int theta_index(int segment) { return 7 * segment + 4; }

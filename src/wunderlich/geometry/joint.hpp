@@ -20,6 +20,7 @@ struct Fold {
   Real half_cos;
 };
 
+/// The turn by kappa over a hinge's length [m] about the ruling (0, 1, eta).
 template <class Real>
 inline Fold<Real> make_fold(Real hinge_length, Real kappa, Real eta) {
   const Real s2 = 1 + eta * eta, s = math::sqrt(s2);
@@ -59,6 +60,7 @@ struct FoldDerivatives {
   InFrame<Real> kappa_eta, eta_eta;  ///< ... + kappa_eta dkappa deta + eta_eta deta^2 / 2
 };
 
+/// Of a fold of `make_fold`, h its hinge's length [m], at the same kappa [1/m] and eta.
 template <class Real>
 inline FoldDerivatives<Real> fold_derivatives(const Fold<Real>& fold, Real h, Real kappa, Real eta) {
   const Real sine = 2 * fold.half_sin * fold.half_cos;

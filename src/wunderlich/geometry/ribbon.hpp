@@ -12,8 +12,10 @@
 
 namespace wunderlich::geometry {
 
+/// Whether the two ends of the strip are joined.
 enum class Closure { open, loop };
 
+/// What a user states of a strip.
 struct RibbonSpec {
   double length = 1;   ///< [m]
   double width = 0.1;  ///< full width [m]

@@ -23,6 +23,7 @@ Mesh render_mesh(const Ribbon& ribbon, const State& state, int subdivision, int 
 /// Nodes with mean frames and strains, as in `centerline.csv`.
 std::vector<CenterlineSample> centerline(const Ribbon& ribbon, const State& state);
 
+/// The strip unrolled: each node's ruling in the flat strip and the fold about it.
 FlatPattern flat_pattern(const Ribbon& ribbon, const State& state);
 
 }  // namespace wunderlich::geometry

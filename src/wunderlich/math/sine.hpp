@@ -5,6 +5,7 @@
 
 namespace wunderlich::math {
 
+/// Sine and cosine of one angle, or of four.
 template <class Real>
 struct SineCosine {
   Real sine, cosine;

@@ -50,13 +50,13 @@ Beside values outside their range:
 - clamps at `start` or `end` of a loop, half twists or free rulings where they mean nothing;
 - a direction of no length; a tangent and normal, or an axis and side, that are not perpendicular; a frame that turns by
   half a turn between keyframes;
-- keyframes whose times do not increase; a force entry without force and torque; gravity with nothing that holds the
-  strip;
+- keyframes whose times do not increase; a force entry without force and torque; an equilibrium under gravity with nothing that
+  holds the strip;
 - meshes that are open, turned inside out or in part, or have edges of more than two faces; `file` and `obj` together;
 - `ribbons` beside `ribbon`, or beside `clamps`, `pins`, `forces` or `initial`, which belong into its entries; several of
   them with another method than `implicit`, or with `solver.conserve`;
-- sizes and directions that a shape does not have; `contact` without
-  `obstacles`;
+- sizes and directions that a shape does not have; `contact` without `obstacles`
+  or `contact.self: true`;
 - both `width` and `aspect`, both `bending_stiffness` and `young_modulus`, both `area_density` and `mass_density`;
 - more than 2e7 segments times frames, or more than 2e7 points of the rendered surface.
 )";

@@ -52,6 +52,7 @@ void stand(const Pose& pose, MeshSolid& solid);
 /// that their sides are felt by. Meshes of boxes and ends are made once.
 void place_meshes(const constraint::Surroundings& surroundings, double t, double stiffness, MeshProblem& problem);
 
+/// Finds all pairs of facets and solids nearer than thickness and distance, and what else `points` holds.
 void find_mesh_pairs(const geometry::Ribbon& ribbon, const MeshProblem& problem, const geometry::Chain& chain,
                      const geometry::Kinematics& kinematics, MeshPoints& points);
 

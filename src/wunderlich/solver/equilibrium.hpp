@@ -74,6 +74,7 @@ struct PathStep {
   std::string failure;     ///< why it was not accepted: what, where, likely cause
 };
 
+/// All that a path needs; for a loop also the strip before it is closed, both ends clamped.
 PathProblem make_path(const geometry::Ribbon& ribbon, const constraint::Surroundings& surroundings,
                       const PathOptions& options);
 

@@ -29,6 +29,7 @@ struct PairSearch {
   std::vector<contact::Near> near;
 };
 
+/// The box around a part of a facet, and around a facet, of its corners [m].
 contact::Extent box_of(const FacetPart& part, const contact::PairPoints& facet);
 contact::Extent box_of(const contact::PairPoints& facet);
 

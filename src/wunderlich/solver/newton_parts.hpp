@@ -33,6 +33,7 @@ double measure_step(const geometry::Ribbon& ribbon, const NewtonWorkspace& work,
 double step_limit(const geometry::Ribbon& ribbon, const NewtonOptions& options, const geometry::Chain& chain,
                   const NewtonWorkspace& work, double largest_turn);
 
+/// The chain moved by a step times `scale`.
 void apply_step(const geometry::Chain& chain, const math::ChainStep& step, double scale, geometry::Chain& trial);
 
 /// NaN if any value is: it must not pass for small.

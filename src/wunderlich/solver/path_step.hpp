@@ -16,6 +16,7 @@ void note_frames(const PathProblem& path, PathState& state);
 void shorten(PathState& state, double planned, PathStep& step);
 std::string why(const NewtonReport& report, const PathState& state);
 
+/// Those of a path's options.
 NewtonOptions newton_options(const PathProblem& path);
 
 /// Is no hinge folded by more than `tolerance` over the strip's length?

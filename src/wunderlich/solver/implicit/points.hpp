@@ -36,6 +36,7 @@ struct Scheme {
 /// oscillation that generalised-alpha leaves after a step, in [0, 1].
 Scheme make_scheme(Integrator kind, double rho, double h, double h_before);
 
+/// Where point i would be at the end of the step if nothing but its inertia moved it [m].
 inline Vec3 anchor(const Scheme& s, const Points& p, std::size_t i) {
   Vec3 x = s.x0 * p.x[i] + s.v0 * p.v[i];
   if (s.kind == Integrator::generalised_alpha) x += s.a0 * p.a[i] + s.true0 * p.acceleration[i];
@@ -43,6 +44,7 @@ inline Vec3 anchor(const Scheme& s, const Points& p, std::size_t i) {
   return x;
 }
 
+/// Makes room for so many points.
 void resize(std::size_t count, Points& points);
 
 /// Takes the step's end positions; velocities and accelerations follow. Returns the largest local error of the points.

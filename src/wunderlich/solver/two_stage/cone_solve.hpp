@@ -18,6 +18,7 @@ struct ConeProblem {
   std::vector<double> system, rhs, force_kept, slack_kept;
 };
 
+/// Sweeps taken, and whether they were cut off at their limit.
 struct ConeReport {
   int sweeps = 0;
   bool capped = false;

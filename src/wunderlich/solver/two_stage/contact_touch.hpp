@@ -67,7 +67,7 @@ void refresh_touch(const geometry::State& shape, const Workspace& work, Touch& t
 /// What a step leaves of a gap of its start, where that is negative: the touch comes out without being thrown.
 double allowed_gap(double start_gap, double width);
 
-// A point in the frame of a solid, and out of it.
+/// A point in the frame of a solid, and out of it.
 Vec3 into(const Pose& pose, const Vec3& point);
 Vec3 out_of(const Pose& pose, const Vec3& point);
 

@@ -5,6 +5,7 @@
 
 namespace wunderlich::solver::two_stage {
 
+/// Sweeps taken, and whether they were cut off at their limit.
 struct SweepReport {
   int sweeps = 0;
   bool capped = false;

@@ -16,6 +16,7 @@ inline constexpr int kBlockRows = 3;
 /// |x| that the bound allows: short of 1, where the log energy is infinite.
 inline constexpr double kRulingLimit = 1 - 1e-4;
 
+/// An entry of J: its row, and the derivative by the unknown.
 struct Entry {
   int row;
   double slope;
