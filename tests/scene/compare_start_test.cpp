@@ -73,5 +73,21 @@ compare: {shell_conforming: {along: 21, across: 3}}
   EXPECT_LE(*ribbon.imbalance, 1e-8);
 }
 
+// A path ends at its duration, whatever the keyframes after it say; the shell then rests under the loads of that time.
+TEST(CompareStart, AShellRestsUnderTheLoadsOfThePathsEnd) {
+  const Scene scene = scene_of(R"(
+ribbon: {length: 1, width: 0.1, segments: 20, bending_stiffness: 1, area_density: 1}
+clamps: [{at: start}]
+forces: [{at: end, keyframes: [{time: 0, force: [0, 0, 0]}, {time: 1, force: [0, 0, 0.1]}, {time: 2, force: [0, 0, 1]}]}]
+solver: {method: equilibrium, duration: 1}
+compare: {shell_conforming: {along: 21, across: 3}}
+)");
+  const Observer go_on = [](const RunStatus&) { return true; };
+  const ModelResult ribbon = run_model(scene, Model::ribbon, go_on);
+  const ModelResult shell = run_model(scene, Model::shell_conforming, go_on);
+  EXPECT_TRUE(shell.converged) << shell.failure;
+  EXPECT_NEAR(shell.energy.elastic / ribbon.energy.elastic, 1, 0.08);
+}
+
 }  // namespace
 }  // namespace wunderlich::scene

@@ -20,18 +20,29 @@ constraint::Surroundings stretched(const constraint::Surroundings& surroundings,
   return out;
 }
 
-constraint::Surroundings approach_to(const constraint::Surroundings& surroundings, const std::vector<Pose>& own) {
+constraint::Surroundings standing_at(const constraint::Surroundings& surroundings, double time) {
   constraint::Surroundings out = surroundings;
+  const auto stand = [&](constraint::Motion& motion) { motion.keys = {{0, constraint::pose_at(motion, time), 0}}; };
+  for (constraint::Support& support : out.supports) stand(support.motion);
+  for (constraint::Obstacle& obstacle : out.obstacles) stand(obstacle.motion);
+  for (constraint::Load& load : out.loads) {
+    const constraint::LoadKey key = constraint::load_at(load, time);
+    load.keys = {{0, key.force, key.torque}};
+  }
+  return out;
+}
+
+constraint::Surroundings approach_to(const constraint::Surroundings& surroundings, const std::vector<Pose>& own) {
+  constraint::Surroundings out = standing_at(surroundings, 0);
   for (std::size_t k = 0; k < out.supports.size(); ++k) {
     constraint::Motion& motion = out.supports[k].motion;
-    motion.keys = {{0, own[k], 0}, {1, constraint::pose_at(motion, 0), 0}};
+    motion.keys = {{0, own[k], 0}, {1, motion.keys.front().pose, 0}};
   }
   for (constraint::Load& load : out.loads) {
-    const constraint::LoadKey key = constraint::load_at(load, 0);
-    load.keys = {{0, Vec3::Zero(), Vec3::Zero()}, {1, key.force, key.torque}};
+    constraint::LoadKey key = load.keys.front();
+    key.time = 1;
+    load.keys = {{0, Vec3::Zero(), Vec3::Zero()}, key};
   }
-  for (constraint::Obstacle& obstacle : out.obstacles)
-    obstacle.motion.keys = {{0, constraint::pose_at(obstacle.motion, 0), 0}};
   return out;
 }
 

@@ -62,6 +62,9 @@ class ModelLog {
 /// The same supports, loads and obstacles with their keys `factor` times as far apart.
 constraint::Surroundings stretched(const constraint::Surroundings& surroundings, double factor);
 
+/// The same as they are at a time, for ever.
+constraint::Surroundings standing_at(const constraint::Surroundings& surroundings, double time);
+
 /// What brings a model to the surroundings of time 0 while time goes from 0 to 1: supports come from its own poses
 /// there, loads grow from nothing. Solids stand.
 constraint::Surroundings approach_to(const constraint::Surroundings& surroundings, const std::vector<Pose>& own);

@@ -79,6 +79,7 @@ struct Run {
         path(s.solver.method == Method::equilibrium),
         factor(path ? s.compare.load_time : 1),
         surroundings(path ? stretched(s.surroundings, factor) : s.surroundings),
+        settled(standing_at(surroundings, factor * s.solver.duration)),
         loaded(factor * s.solver.duration),
         time_step(conforms(model) ? s.compare.conforming.time_step : s.compare.nonconforming.time_step),
         shell(shell_of(s, model)),
@@ -93,9 +94,9 @@ struct Run {
   const Scene& scene;
   bool path;
   double factor;
-  constraint::Surroundings surroundings;
-  double loaded, time_step;           // when the loads have come [s]
-  constraint::Surroundings approach;  // of a path, to its start
+  constraint::Surroundings surroundings, settled;  // on the way, and when the path is over and its last loads stay
+  double loaded, time_step;                        // when the loads have come [s]
+  constraint::Surroundings approach;               // of a path, to its start
   bool approaching = false;
   shell::Shell shell;
   ModelLog log;
@@ -144,7 +145,9 @@ struct Run {
   }
 
   Tried step_to(double t) {
-    const shell::StepReport report = shell::step(shell, approaching ? approach : surroundings, options, t, state, work);
+    const bool over = path && state.time >= loaded - 1e-9 * time_step;
+    const constraint::Surroundings& now = approaching ? approach : over ? settled : surroundings;
+    const shell::StepReport report = shell::step(shell, now, options, t, state, work);
     ++tried;
     missed += !report.converged;
     worst = std::max(worst, report.max_length_error);
@@ -229,7 +232,7 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   result.isometry = geometry::isometry_errors(grid_of(run.shell, run.state.x));
   result.moved_seconds = run.state.time;
   if (run.path && run.rests && scene.surroundings.obstacles.empty())
-    result.imbalance = shell::net_force(run.shell, run.surroundings, run.state);
+    result.imbalance = shell::net_force(run.shell, run.settled, run.state);
   return run.log.finished();
 }
 
