@@ -5,6 +5,7 @@
 
 namespace wunderlich {
 
+/// Measures wall-clock time from its making on, in seconds.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
