@@ -75,8 +75,8 @@ ChainProblem random_problem(const Ribbon& ribbon, const energy::Model& model, Ra
     problem.facets.push_back({root * root.transpose(), anchor});
   }
   for (const int segment : {2, 0, ribbon.segments - 1}) {
-    problem.grips.push_back({segment, problem.facets[static_cast<std::size_t>(segment)]});
-    problem.grips.back().tie.anchor.col(0) = random.vector();
+    const auto s = static_cast<std::size_t>(segment);
+    problem.grips.push_back({segment, {problem.facets[s].weight, problem.facets[s == 0 ? 1 : 0].anchor}});
   }
   problem.loads = {{ribbon.segments, LoadFrame::material, random.vector(), random.vector()},
                    {3, LoadFrame::space, random.vector(), random.vector()}};

@@ -4,6 +4,7 @@ import { Meter, showFigures, showLegend } from './figures';
 import { Hand } from './hand';
 import { connectKeep } from './keep';
 import { LivePlots } from './plots';
+import { edited } from './scene_text';
 import { fromFragment } from './share';
 import { Simulator, SimulatorError, type SceneInfo, type ShippedScene } from './simulator';
 import { Sliders } from './sliders';
@@ -79,7 +80,7 @@ class Page {
   /** The scene with other values of some keys. */
   private edit(overrides: string[]) {
     try {
-      this.load(this.simulator.resolve(this.text, this.name, [...this.sliders.overrides(this.text), ...overrides]), this.name);
+      this.load(edited(this.simulator, this.text, this.name, [...this.sliders.overrides(this.text), ...overrides]), this.name);
     } catch (error) {
       this.say((error as Error).message, true);
     }
@@ -312,8 +313,7 @@ class Page {
 
   /** The scene as it is now: its text with what the sliders say. */
   private current(): string {
-    const overrides = this.sliders.overrides(this.text);
-    return overrides.length === 0 ? this.text : this.simulator.resolve(this.text, this.name, overrides);
+    return edited(this.simulator, this.text, this.name, this.sliders.overrides(this.text));
   }
 
   /** The scene that the address holds, else the first. */
