@@ -78,6 +78,7 @@ int jobs_of(const SweepArguments& arguments) {
 /// Writes the run folder that `keep` asks for.
 sweep::Keep keeper(const sweep::Sweep& sweep, const fs::path& folder) {
   std::vector<io::Format> formats;
+  formats.reserve(sweep.keep.size());
   for (const std::string& word : sweep.keep) formats.push_back(io::parse_format(word));
   require_tools(formats);
   return [formats, folder](const scene::Scene& scene, scene::RunResult& result, const std::string& key) {

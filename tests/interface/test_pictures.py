@@ -20,7 +20,9 @@ def pixels(path):
     width, height, _ = image.GetDimensions()
     values = image.GetPointData().GetScalars()
     assert values.GetNumberOfComponents() == 3
-    return [[values.GetTuple3((height - 1 - y) * width + x) for x in range(width)] for y in range(height)]
+    data = bytes(memoryview(values))
+    rows = [data[3 * width * y:3 * width * (y + 1)] for y in reversed(range(height))]
+    return [list(zip(row[0::3], row[1::3], row[2::3])) for row in rows]
 
 
 def share(picture, holds):

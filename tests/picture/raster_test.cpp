@@ -9,17 +9,17 @@
 namespace wunderlich::picture {
 namespace {
 
-double area(const std::array<Point, 3>& at) {
-  const Point p = at[1] - at[0], q = at[2] - at[0];
+double area(const std::array<Vec3, 3>& at) {
+  const Vec3 p = at[1] - at[0], q = at[2] - at[0];
   return 0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
 }
 
 TEST(Cover, CountsTheAreaWithinHalfASampleOfTheEdges) {
   std::mt19937 random(7);
-  std::uniform_real_distribution<float> place(5, 195);
+  std::uniform_real_distribution<double> place(5, 195);
   for (int trial = 0; trial < 100; ++trial) {
-    std::array<Point, 3> at;
-    for (Point& p : at) p = Point(place(random), place(random), 1);
+    std::array<Vec3, 3> at;
+    for (Vec3& p : at) p = Vec3(place(random), place(random), 1);
     int count = 0;
     cover(at, {0, 0, 200, 200}, [&](int, int, const Weights& w) {
       EXPECT_NEAR(w.a + w.b + w.c, 1, 1e-5);
@@ -33,8 +33,8 @@ TEST(Cover, CountsTheAreaWithinHalfASampleOfTheEdges) {
 TEST(Cover, LeavesNoGapBetweenTrianglesAndStaysInItsWindow) {
   // A square fan about a point that lies anywhere.
   std::vector<int> hits(64 * 64, 0);
-  const std::array<Point, 4> corners{Point(-3, -3, 1), Point(70, -3, 1), Point(70, 70, 1), Point(-3, 70, 1)};
-  const Point centre(23.31f, 40.77f, 1);
+  const std::array<Vec3, 4> corners{Vec3(-3, -3, 1), Vec3(70, -3, 1), Vec3(70, 70, 1), Vec3(-3, 70, 1)};
+  const Vec3 centre(23.31, 40.77, 1);
   const Window window{8, 16, 64, 48};
   for (std::size_t k = 0; k < 4; ++k) {
     cover({centre, corners[k], corners[(k + 1) % 4]}, window, [&](int x, int y, const Weights&) {
@@ -52,9 +52,9 @@ Projection usual_projection() { return {{view_from({0, 0}), Vec3(0, -2, 0), 0.5,
 TEST(Projection, IsThatOfAPinhole) {
   // From -y at distance 2 a height of 1 fills the picture: half_height 0.5 at distance 1.
   const Projection projection = usual_projection();
-  const Point middle = projection.sample(projection.eye_space(Vec3::Zero()));
-  EXPECT_TRUE(middle.isApprox(Point(200, 200, 0.5f)));
-  const Point corner = projection.sample(projection.eye_space(Vec3(0.5, 0, 1)));
+  const Vec3 middle = projection.sample(projection.eye_space(Vec3::Zero()));
+  EXPECT_TRUE(middle.isApprox(Vec3(200, 200, 0.5)));
+  const Vec3 corner = projection.sample(projection.eye_space(Vec3(0.5, 0, 1)));
   EXPECT_NEAR(corner.x(), 300, 1e-3);
   EXPECT_NEAR(corner.y(), 0, 1e-3);
 }
@@ -70,7 +70,7 @@ TEST(Projection, CutsWhatReachesBehindTheEye) {
   ASSERT_FALSE(patches.empty());
   bool lower_edge = false;
   for (const Patch& patch : patches) {
-    for (const Point& p : patch.at) EXPECT_TRUE(p.z() > 0 && p.z() <= 1.001 / near_plane);
+    for (const Vec3& p : patch.at) EXPECT_TRUE(p.z() > 0 && p.z() <= 1.001 / near_plane);
     cover(patch.at, {0, 399, 400, 400}, [&](int, int, const Weights&) { lower_edge = true; });
   }
   EXPECT_TRUE(lower_edge);

@@ -166,7 +166,7 @@ std::string pattern_svg(const FlatPattern& pattern, const std::string& title) {
   }
   out += layer("legend", words, written);
   out += layer("scale", words, scale_bar(box.left, box.bottom + below, letter, bar));
-  const auto fold = [&](const char* colour, std::vector<double> dashes) {
+  const auto fold = [&](const char* colour, const std::vector<double>& dashes) {
     std::string style = "fill=\"none\" " + line + fmt::format(" stroke=\"{}\" stroke-dasharray=\"", colour);
     for (const double dash : dashes)
       style += fmt::format("{:.3f} ", dash * std::min(0.5 * letter, 0.05 * mm * pattern.width));

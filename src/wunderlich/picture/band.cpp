@@ -8,7 +8,7 @@ namespace wunderlich::picture {
 
 namespace {
 
-constexpr float line_bias = 0.003f;  // of the depth: lines lie on the surface, and show
+constexpr double line_bias = 0.003;  // of the depth: lines lie on the surface, and show
 
 const Point ink = linear_of(0x2a1a12u);
 const Point paper = linear_of(0xf8f6f1u);
@@ -37,7 +37,7 @@ Point lit(const Point& paint, const Point& normal, const Vec3& place, const Shee
   const Point eye = (sheet.projection.camera.eye - place).normalized().cast<float>();
   const float facing = n.dot(l);
   // Looked up a little off the surface, on the side of the light: a strip does not shade itself there.
-  const Vec3 off = place + 0.012 * (facing > 0 ? 1.0 : -1.0) * n.cast<double>();
+  const Vec3 off = place + std::max(0.012, 8 * sheet.shadow.texel()) * (facing > 0 ? 1.0 : -1.0) * n.cast<double>();
   const float reached = 1 - sheet.shadow.at(off, 2, 2);
   const float sun = facing > 0 ? facing * reached : -0.18f * facing * reached;  // paper lets some pass
   const Point sky = Point(0.80f, 0.80f, 0.82f), ground = Point(0.50f, 0.46f, 0.43f);
@@ -93,7 +93,7 @@ class Band {
 
   void mark(const Patch& patch, int index) {
     cover(patch.at, window_, [&](int x, int y, const Weights& w) {
-      const float nearness = w.a * patch.at[0].z() + w.b * patch.at[1].z() + w.c * patch.at[2].z();
+      const auto nearness = static_cast<float>(w.a * patch.at[0].z() + w.b * patch.at[1].z() + w.c * patch.at[2].z());
       Sample& sample = at(x, y);
       if (nearness <= sample.nearness) return;
       sample.nearness = nearness;
@@ -104,15 +104,15 @@ class Band {
   /// The colour of a patch at the middle of a pixel, or where it is nearest to it.
   Point colour_of_patch(const Patch& patch, int x, int y) const {
     const Plane plane(patch.at);
-    const Weights w = plane((static_cast<float>(x) + 0.5f) * fine, (static_cast<float>(y) + 0.5f) * fine);
-    std::array<float, 3> share{std::max(0.0f, w.a) * patch.at[0].z(), std::max(0.0f, w.b) * patch.at[1].z(),
-                               std::max(0.0f, w.c) * patch.at[2].z()};
-    const float sum = share[0] + share[1] + share[2];
+    const Weights w = plane((x + 0.5) * fine, (y + 0.5) * fine);
+    const std::array<double, 3> share{std::max(0.0f, w.a) * patch.at[0].z(), std::max(0.0f, w.b) * patch.at[1].z(),
+                                      std::max(0.0f, w.c) * patch.at[2].z()};
     Corner mean;
     for (std::size_t c = 0; c < 3; ++c) {
-      mean.position += share[c] / sum * patch.corners[c].position;
-      mean.normal += share[c] / sum * patch.corners[c].normal;
-      mean.colour += share[c] / sum * patch.corners[c].colour;
+      const auto part = static_cast<float>(share[c] / (share[0] + share[1] + share[2]));
+      mean.position += part * patch.corners[c].position;
+      mean.normal += part * patch.corners[c].normal;
+      mean.colour += part * patch.corners[c].colour;
     }
     return lit(mean.colour, mean.normal, mean.position.cast<double>(), sheet_);
   }
@@ -137,33 +137,30 @@ class Band {
   }
 
   void blend(const Stroke& stroke) {
-    const Eigen::Vector2f from = stroke.from.head<2>(), way = (stroke.to - stroke.from).head<2>();
-    const float length = way.norm(), h = stroke.half_width;
-    if (!(length > 1e-6f)) return;
-    const Eigen::Vector2f along = way / length, across(-along.y(), along.x());
-    const float lowest = std::min(stroke.from.y(), stroke.to.y()) - h,
-                highest = std::max(stroke.from.y(), stroke.to.y()) + h;
-    const int top =
-        static_cast<int>(std::clamp(lowest, static_cast<float>(window_.top), static_cast<float>(window_.bottom)));
-    const int bottom =
-        static_cast<int>(std::clamp(highest + 1, static_cast<float>(window_.top), static_cast<float>(window_.bottom)));
+    const Vec2 from = stroke.from.head<2>(), way = (stroke.to - stroke.from).head<2>();
+    const double length = way.norm(), h = stroke.half_width;
+    if (!(length > 1e-6)) return;
+    const Vec2 along = way / length, across(-along.y(), along.x());
+    const auto within = [](double value, int low, int high) {
+      return static_cast<int>(std::clamp(value, static_cast<double>(low), static_cast<double>(high)));
+    };
+    const int top = within(std::min(stroke.from.y(), stroke.to.y()) - h, window_.top, window_.bottom);
+    const int bottom = within(std::max(stroke.from.y(), stroke.to.y()) + h + 1, window_.top, window_.bottom);
     for (int y = top; y < bottom; ++y) {
       // The part of the row within the line's width.
-      const float dy = static_cast<float>(y) + 0.5f - from.y();
-      float left = std::min(0.0f, way.x()) - h, right = std::max(0.0f, way.x()) + h;
-      if (std::abs(across.x()) > 1e-3f) {
-        const float centre = -dy * across.y() / across.x(), reach = h / std::abs(across.x());
+      const double dy = y + 0.5 - from.y();
+      double left = std::min(0.0, way.x()) - h, right = std::max(0.0, way.x()) + h;
+      if (std::abs(across.x()) > 1e-3) {
+        const double centre = -dy * across.y() / across.x(), reach = h / std::abs(across.x());
         left = std::max(left, centre - reach - 1);
         right = std::min(right, centre + reach + 1);
       }
-      const auto column = [&](float x) {
-        return static_cast<int>(std::clamp(x + from.x(), 0.0f, static_cast<float>(sheet_.width)));
-      };
-      for (int x = column(left); x < column(right + 1); ++x) {
-        const Eigen::Vector2f d(static_cast<float>(x) + 0.5f - from.x(), dy);
-        const float t = d.dot(along) / length;
+      const int end = within(from.x() + right + 1, 0, sheet_.width);
+      for (int x = within(from.x() + left, 0, sheet_.width); x < end; ++x) {
+        const Vec2 d(x + 0.5 - from.x(), dy);
+        const double t = d.dot(along) / length;
         if (std::abs(d.dot(across)) > h || t < 0 || t >= 1) continue;
-        const float nearness = (1 + line_bias) * (stroke.from.z() + t * (stroke.to.z() - stroke.from.z()));
+        const double nearness = (1 + line_bias) * (stroke.from.z() + t * (stroke.to.z() - stroke.from.z()));
         Sample& sample = at(x, y);
         if (nearness >= sample.nearness) sample.colour += stroke.opacity * (ink - sample.colour);
       }

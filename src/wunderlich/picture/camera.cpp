@@ -92,10 +92,12 @@ std::vector<std::vector<Vec3>> shown_points(const std::vector<const Frame*>& fra
 
 std::vector<Fit> fits_of(const std::vector<std::vector<Vec3>>& points) {
   std::vector<const std::vector<Vec3>*> all;
+  all.reserve(points.size());
   for (const auto& list : points) all.push_back(&list);
   const Fit whole = fit_of(all);
   if (whole.radius <= follow_beyond * fit_of({all.back()}).radius) return std::vector<Fit>(points.size(), whole);
   std::vector<Fit> fits;
+  fits.reserve(points.size());
   for (const auto* list : all) fits.push_back(fit_of({list}));
   return fits;
 }

@@ -16,8 +16,6 @@
 
 #include "wunderlich/base/error.hpp"
 
-extern char** environ;
-
 namespace wunderlich::picture {
 
 namespace fs = std::filesystem;
@@ -52,7 +50,7 @@ fs::path find_ffmpeg() {
   std::string_view rest = path == nullptr ? "" : path;
   while (!rest.empty()) {
     const std::size_t colon = std::min(rest.find(':'), rest.size());
-    const fs::path candidate = fs::path(rest.substr(0, colon)) / "ffmpeg";
+    fs::path candidate = fs::path(rest.substr(0, colon)) / "ffmpeg";
     std::error_code error;
     if (colon > 0 && fs::is_regular_file(candidate, error) && ::access(candidate.c_str(), X_OK) == 0) return candidate;
     rest.remove_prefix(std::min(colon + 1, rest.size()));
@@ -103,6 +101,7 @@ class Encoder {
                                    "+faststart",
                                    (scratch.folder / "film.mp4").string()};
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;

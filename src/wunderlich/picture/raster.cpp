@@ -14,7 +14,7 @@ Patch patch_of(const Projection& projection, const std::array<Corner, 3>& corner
   for (std::size_t k = 0; k < 3; ++k) {
     patch.at[k] = projection.sample(projection.eye_space(corners[k].position.cast<double>()));
   }
-  const Point p = patch.at[1] - patch.at[0], q = patch.at[2] - patch.at[0];
+  const Vec3 p = patch.at[1] - patch.at[0], q = patch.at[2] - patch.at[0];
   patch.front = p.x() * q.y() - p.y() * q.x() < 0;  // y points down
   return patch;
 }
@@ -29,8 +29,8 @@ Vec3 Projection::eye_space(const Vec3& p) const {
   return {d.dot(camera.view.right), d.dot(camera.view.up), -d.dot(camera.view.towards)};
 }
 
-Point Projection::sample(const Vec3& e) const {
-  return Vec3(centre.x() + scale * e.x() / e.z(), centre.y() - scale * e.y() / e.z(), 1 / e.z()).cast<float>();
+Vec3 Projection::sample(const Vec3& e) const {
+  return {centre.x() + scale * e.x() / e.z(), centre.y() - scale * e.y() / e.z(), 1 / e.z()};
 }
 
 void project(const Projection& projection, const std::array<Corner, 3>& corners, std::vector<Patch>& patches) {
@@ -56,10 +56,10 @@ void project(const Projection& projection, const std::array<Corner, 3>& corners,
   }
 }
 
-Plane::Plane(const std::array<Point, 3>& at) : origin(at[0].head<2>()) {
-  const Eigen::Vector2f p = (at[1] - at[0]).head<2>(), q = (at[2] - at[0]).head<2>();
-  const float area = p.x() * q.y() - p.y() * q.x();
-  valid = std::abs(area) > 1e-12f;
+Plane::Plane(const std::array<Vec3, 3>& at) : origin(at[0].head<2>()) {
+  const Vec2 p = (at[1] - at[0]).head<2>(), q = (at[2] - at[0]).head<2>();
+  const double area = p.x() * q.y() - p.y() * q.x();
+  valid = std::abs(area) > 1e-12;
   if (!valid) return;
   bx = q.y() / area, by = -q.x() / area;
   cx = -p.y() / area, cy = p.x() / area;

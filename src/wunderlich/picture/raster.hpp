@@ -23,8 +23,8 @@ struct Corner {
 /// A triangle in the picture: x, y in samples, and 1/depth, which is linear over the picture.
 struct Patch {
   std::array<Corner, 3> corners;
-  std::array<Point, 3> at;
-  bool front = true;  ///< seen with its corners counter-clockwise
+  std::array<Vec3, 3> at;  // in double: of a floor that begins beside the eye, corners are far outside
+  bool front = true;       ///< seen with its corners counter-clockwise
 };
 
 /// Samples from `left`, `top` up to but without `right`, `bottom`.
@@ -42,7 +42,7 @@ struct Projection {
 
   /// Right, up and depth, before the division.
   Vec3 eye_space(const Vec3& p) const;
-  Point sample(const Vec3& eye_space) const;
+  Vec3 sample(const Vec3& eye_space) const;
 };
 
 /// Nothing nearer than this to the eye is drawn.
@@ -58,26 +58,26 @@ struct Weights {
 
 /// Weights at any x, y; negative outside. Nothing is to be divided by for a triangle without area: `valid` is false.
 struct Plane {
-  explicit Plane(const std::array<Point, 3>& at);
-  Weights operator()(float x, float y) const {
-    const float dx = x - origin.x(), dy = y - origin.y();
-    const float b = bx * dx + by * dy, c = cx * dx + cy * dy;
-    return {1 - b - c, b, c};
+  explicit Plane(const std::array<Vec3, 3>& at);
+  Weights operator()(double x, double y) const {
+    const double dx = x - origin.x(), dy = y - origin.y();
+    const double b = bx * dx + by * dy, c = cx * dx + cy * dy;
+    return {static_cast<float>(1 - b - c), static_cast<float>(b), static_cast<float>(c)};
   }
-  Eigen::Vector2f origin;
-  float bx = 0, by = 0, cx = 0, cy = 0;
+  Vec2 origin;
+  double bx = 0, by = 0, cx = 0, cy = 0;
   bool valid = false;
 };
 
 /// Calls `visit(x, y, weights)` for every sample of the window whose centre the triangle covers, edges included.
 template <class Visit>
-void cover(const std::array<Point, 3>& at, const Window& window, Visit visit) {
+void cover(const std::array<Vec3, 3>& at, const Window& window, Visit visit) {
   const Plane plane(at);
   if (!plane.valid) return;
   const auto range = [&](int k, int low, int high) {
-    const float least = std::min({at[0][k], at[1][k], at[2][k]}), most = std::max({at[0][k], at[1][k], at[2][k]});
-    const auto clamped = [&](float value) {
-      return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
+    const double least = std::min({at[0][k], at[1][k], at[2][k]}), most = std::max({at[0][k], at[1][k], at[2][k]});
+    const auto clamped = [&](double value) {
+      return static_cast<int>(std::clamp(value, static_cast<double>(low), static_cast<double>(high)));
     };
     return std::pair{clamped(std::floor(least)), clamped(std::ceil(most) + 1)};
   };
@@ -85,7 +85,7 @@ void cover(const std::array<Point, 3>& at, const Window& window, Visit visit) {
   const auto [top, bottom] = range(1, window.top, window.bottom);
   for (int y = top; y < bottom; ++y) {
     for (int x = left; x < right; ++x) {
-      const Weights w = plane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const Weights w = plane(x + 0.5, y + 0.5);
       if (w.a >= 0 && w.b >= 0 && w.c >= 0) visit(x, y, w);
     }
   }

@@ -20,8 +20,11 @@ class Shadow {
   /// `step` texels apart.
   float at(const Vec3& p, int reach, int step) const;
 
+  /// Side of a texel, on the stage.
+  double texel() const { return 1 / per_unit_; }
+
  private:
-  Point seen(const Vec3& p) const;  // texel x, y and height towards the light
+  Vec3 seen(const Vec3& p) const;  // texel x, y and height towards the light
   View axes_;
   double per_unit_ = 1;  // texels
   std::vector<float> height_;

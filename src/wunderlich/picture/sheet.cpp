@@ -99,6 +99,7 @@ Sheet sheet_of(const Subject& subject, const Style& style, const Plan& plan, std
   add_ribbon(subject, style, plan, k, ribbon);
   const std::vector<Triangle> bodies = bodies_on_stage(subject, plan, k);
   std::vector<std::array<Vec3, 3>> opaque;
+  opaque.reserve(ribbon.size() + bodies.size());
   for (const auto& sides : ribbon) opaque.push_back(places(sides[0]));
   for (const Triangle& body : bodies) opaque.push_back(places(body));
   const int width = fine * style.width, height = fine * style.height;

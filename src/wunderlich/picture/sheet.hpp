@@ -13,7 +13,7 @@ inline constexpr int fine = 4;  ///< samples a pixel, each way
 
 /// A line in the picture, x, y in samples and 1/depth.
 struct Stroke {
-  Point from, to;
+  Vec3 from, to;
   float half_width = 1;
   float opacity = 1;
 };
