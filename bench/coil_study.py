@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""How many rows a conforming shell needs to coil as the ribbon does: the table and the picture of docs/baselines.md, "Coil".
+"""How many rows a conforming shell needs to coil as the ribbon does: table and picture; what came of it is in docs/baselines.md, "Coil".
 
-    python3 bench/coil_study.py [--program FILE] [--rows 4,6,8,10,12] [--picture FILE]
+    python3 bench/coil_study.py [--program FILE] [--rows 4,6,8,10,12] [--picture FILE] [--set KEY=VALUE]
 
 The scene is `coil` up to where it lies loose, without self-contact, which shells do not have. A shell turns for 0.4 s, is loosened for
 0.4 s and rests for 1.6 s, in the metric of masses; the ribbon's equilibrium stands beside. Prints Markdown: energy as V l/(D w), distance of
@@ -87,7 +87,9 @@ def main():
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/wunderlich")
     parser.add_argument("--rows", default="4,6,8,10,12", help="vertices across, separated by commas")
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="of the shells' runs, beside those above")
     chosen = parser.parse_args()
+    SHELL.extend(chosen.set)
     program, rows = chosen.program.resolve(), [int(m) for m in chosen.rows.split(",")]
     ends = {}
     with tempfile.TemporaryDirectory() as name:
