@@ -11,7 +11,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/lists/partial" "$work/source"
 codename=$(. /etc/os-release && echo "$VERSION_CODENAME")
-sites=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' "Codename: $codename" 'Component: main' | sort -u)
+# Mirrors of the release itself, known even where no package lists have been fetched.
+sites=$(apt-get indextargets --no-release-info --format '$(RELEASE) $(SITE)' 'Created-By: Packages' 'Component: main' |
+  sed -n "s/^$codename //p" | sort -u)
 [ -n "$sites" ] || { echo "yaml_source: apt knows no mirror of $codename" >&2; exit 1; }
 while read -r site; do echo "deb-src $site $codename main"; done <<<"$sites" >"$work/sources.list"
 apt=(apt-get -qq -o Dir::Etc::sourcelist="$work/sources.list" -o Dir::Etc::sourceparts=-
