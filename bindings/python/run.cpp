@@ -88,6 +88,7 @@ void save(const Run& run, const std::filesystem::path& folder, const std::vector
       throw InputError("html: the page is made by the program: `wunderlich export --to html` takes the saved folder");
     }
   }
+  app::require_tools(list);
   io::require_writable(folder);
   io::write_run_folder(folder, app::output_of(run.stored, run.summary, {}), list);
 }

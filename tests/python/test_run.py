@@ -190,8 +190,8 @@ class Kept(unittest.TestCase):
         result = wunderlich.run("swing", {"solver.duration": 0.01})
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "out"
-            result.save(out, ["vtp", "glb"])
-            self.assertTrue({"summary.json", "history.csv", "ribbon.glb", "ribbon.pvd"} <= {path.name for path in out.iterdir()})
+            result.save(out, ["vtp", "glb", "png"])
+            self.assertTrue({"summary.json", "history.csv", "ribbon.glb", "ribbon.pvd", "picture.png"} <= {path.name for path in out.iterdir()})
             self.same(wunderlich.Result.load(out), result)
             subprocess.run([PROGRAM, "export", out, "--to", "html"], check=True, capture_output=True)
             self.assertTrue((out / "report.html").exists())
