@@ -23,7 +23,7 @@ from common import Surface  # noqa: E402  (this folder has to be on the path fir
 
 LOOSE = 2.0  # load parameter at which the strip lies loosened; the turn is done at 1
 ALONG = 36
-SHELL = ["compare.metric=mass", "compare.load_time=0.4", "compare.time_step=4e-4", "compare.damping=20"]
+SHELL = ["compare.metric=mass", "compare.load_time=0.4", "compare.time_step=4e-4", "compare.damping=50"]
 
 
 def scene(folder, itself):
