@@ -138,6 +138,15 @@ class Compare(ProgramTest):
         self.assertIn("note: rod: friction is not modelled", said)
         self.assertIn("note: rod: the rod does not feel itself", said)
 
+    def test_only_what_a_comparison_wrote_is_replaced(self):
+        again = ("compare", "strip.yaml", "--models", "rod", "--out", "there", "--quiet")
+        self.expect(0, *again)
+        self.expect(0, *again)
+        for name in ("mine.obj", "ribbon.obj"):  # the second: a name of a model that was not there
+            mine = self.write(f"there/{name}", "v 0 0 0\n")
+            self.expect_refused(*again, says="not written by wunderlich")
+            mine.unlink()
+
     def test_bad_input(self):
         self.expect_refused("compare", "strip.yaml", "--models", "rood", says=["rood", "rod"])
         self.expect_refused("compare", "strip.yaml", "--models", "rod,rod", says="twice")

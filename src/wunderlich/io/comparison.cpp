@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "wunderlich/base/version.hpp"
@@ -157,12 +158,14 @@ bool is_comparison(const std::filesystem::path& folder) {
   if (!std::filesystem::is_regular_file(file, error)) return false;
   const Json data = Json::parse(read_file(file, std::size_t{1} << 24), nullptr, false);
   if (!data.is_object() || data.value("program", "") != program) return false;
+  std::set<std::string> ours{"comparison.json", "comparison.csv", "report.html"};
+  for (const Json& model : data.value("models", Json::array())) {
+    if (model.is_object() && model.contains("model") && model["model"].is_string())
+      ours.insert(model["model"].get<std::string>() + ".obj");
+  }
   // Whatever else is there is somebody else's, and stays.
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const bool ours = name == "comparison.json" || name == "comparison.csv" || name == "report.html" ||
-                      entry.path().extension() == ".obj";
-    if (!ours) return false;
+    if (ours.count(entry.path().filename().string()) == 0) return false;
   }
   return !error;
 }
