@@ -55,7 +55,9 @@ class Compare(ProgramTest):
         result = self.expect(3, "compare", "ring", "--models", "ribbon,shell-conforming", "--out", "there")
         self.assertIn("shell-conforming: did not converge", result.stderr)
         self.assertIn("open strips", result.stderr)
-        self.assertEqual(self.table("there")["shell-conforming"]["converged"], "0")
+        row = self.table("there")["shell-conforming"]
+        self.assertEqual((row["converged"], row["unknowns"], row["steps"]), ("0", str(3 * 36 * 12), ""))
+        self.assertGreater(int(row["constraints"]), 0)
 
     def rows(self, text, *settings, models="ribbon,rod"):
         """The table of a scene, and what the program said of it."""

@@ -29,14 +29,15 @@ using Figure = std::optional<double>;  // empty where it says nothing of a model
 struct Column {
   const char* name;
   Figure (*value)(const ModelResult&);
+  bool of_model = false;  // known before it moves
 };
 
 /// Time a simulated second; a path of equilibria has none.
 Figure per_second(const ModelResult& m) { return m.moved_seconds > 0 ? m.wall_seconds / m.moved_seconds : 0; }
 
 constexpr std::array<Column, 19> columns{{
-    {"unknowns", [](const ModelResult& m) -> Figure { return static_cast<double>(m.unknowns); }},
-    {"constraints", [](const ModelResult& m) -> Figure { return static_cast<double>(m.constraints); }},
+    {"unknowns", [](const ModelResult& m) -> Figure { return static_cast<double>(m.unknowns); }, true},
+    {"constraints", [](const ModelResult& m) -> Figure { return static_cast<double>(m.constraints); }, true},
     {"elastic", [](const ModelResult& m) -> Figure { return m.energy.elastic; }},
     {"normalized", [](const ModelResult& m) -> Figure { return m.energy.normalized; }},
     {"kinetic", [](const ModelResult& m) -> Figure { return m.energy.kinetic; }},
@@ -58,7 +59,7 @@ constexpr std::array<Column, 19> columns{{
 
 /// What says something of a shape, or of steps, says nothing of a model that never moved.
 Figure figure(const ModelResult& model, const Column& column) {
-  if (model.steps == 0) return std::nullopt;
+  if (model.steps == 0 && !column.of_model) return std::nullopt;
   const Figure value = column.value(model);
   if (value && !std::isfinite(*value))
     throw std::domain_error(fmt::format("{}: {} is not finite", model.model, column.name));
