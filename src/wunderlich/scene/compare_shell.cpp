@@ -26,6 +26,7 @@ constexpr double kBulge = 1e-4;  // over the length: out of its plane, so that a
 constexpr double kDrift = 2e-3;  // over the length: what points move by, in a quarter of the time of loading, at rest
 constexpr double kCreep = 1e-4;  // the same in the implicit metric, which has no jerks
 constexpr double kJerk = 1e-6;   // of the elastic energy: what may move at rest
+constexpr double kFlat = 1e-9;   // of D w/l: what counts as elastic energy of a shell that ends flat
 constexpr double kMaxMissed = 0.5, kMaxOff = 2;  // of the steps; of the tolerance
 constexpr int kRounds = 50;                      // of fast projection in a step; where it locks, more do not help
 
@@ -163,8 +164,10 @@ struct Run {
     if (!path || state.time < loaded || state.time < next_look) return false;
     const bool implicit = options.metric == shell::Metric::implicit;
     const double drift = (implicit ? kCreep : kDrift) * scene.ribbon.length;
-    const bool slow =
-        !implicit || shell::kinetic_energy(shell, state.v) <= kJerk * shell::bending_energy(shell, state.x);
+    const geometry::RibbonSpec& strip = scene.ribbon;
+    const double least = kFlat * strip.bending_stiffness * strip.width / strip.length;  // rounding leaves less than 0
+    const double elastic = std::max(shell::bending_energy(shell, state.x), least);
+    const bool slow = !implicit || shell::kinetic_energy(shell, state.v) <= kJerk * elastic;
     const bool still = slow && before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < drift;
     before = state.x;
     next_look = state.time + 0.25 * factor;
@@ -227,6 +230,7 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   }
   result.energy.elastic = shell::bending_energy(run.shell, run.state.x);
   result.energy.kinetic = shell::kinetic_energy(run.shell, run.state.v);
+  result.energy.gravity = shell::gravity_energy(run.shell, scene.surroundings.gravity, run.state.x);
   result.length_error = shell::length_error(run.shell, run.state.x);
   result.missed_steps = run.missed_share();
   result.isometry = geometry::isometry_errors(grid_of(run.shell, run.state.x));
