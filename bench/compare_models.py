@@ -18,6 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 LENGTH = 1  # of the scene's strip [m]
 ACROSS = 9  # points of a surface from rim to rim, but for the shells', which have their own
+REPEATED = 4  # times more, where a run takes less than half a second: the shortest counts
 RIGHT = ["solver.method=implicit", "ribbon.segments=200", "solver.time_step=2.5e-4"]
 
 
@@ -70,6 +71,9 @@ def main():
         middle = middle_of_end(right, ACROSS)
         for case, model, across, settings in cases():
             result, points = run(program, folder, model, settings, chosen.duration)
+            for _ in range(REPEATED if result["wall_seconds"] < 0.5 else 0):
+                again, _ = run(program, folder, model, settings, chosen.duration)
+                result = min(result, again, key=lambda r: r["wall_seconds"])
             error = math.dist(middle_of_end(points, across), middle) / LENGTH
             rows.append((case, model, result["wall_per_second"], error, result["diagonal_strain"], result["converged"]))
     shells = [row for row in rows if row[1].startswith("shell")]

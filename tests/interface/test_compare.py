@@ -137,6 +137,18 @@ class Compare(ProgramTest):
         self.assertEqual(result.returncode, 3)
         self.assertIn("fall on one of its own", result.stderr)
 
+    def test_a_shell_says_where_supports_are_on_points_of_its_own(self):
+        pins = ("ribbon: {length: 1, width: 0.1, segments: 12}\n"
+                "clamps: [{at: start}]\npins: [{at: {node: 6}}, {at: {node: 7}}]\n"
+                "solver: {method: implicit, duration: 0.01}\n")
+        self.write("pins.yaml", pins)
+        coarse = ["--models", "shell-conforming", "--set", "compare.shell_conforming={along: 5, across: 3}"]
+        result = self.expect(3, "compare", "pins.yaml", *coarse, "--out", "few")
+        self.assertIn("two supports hold one point of the mesh: choose compare.shell_conforming.along", result.stderr)
+        self.write("pins.yaml", pins.replace("{node: 6}", "{node: 3}"))
+        result = self.call("compare", "pins.yaml", *coarse, "--out", "few")
+        self.assertIn(f"up to {1 / 12:.2g} m from their places", result.stderr)
+
     def test_the_rod_says_what_it_leaves_out(self):
         lying = ("ribbon: {length: 0.3, width: 0.03, segments: 10, bending_stiffness: 3e-3, area_density: 0.1}\n"
                  "gravity: [0, 0, -9.81]\n"

@@ -202,6 +202,26 @@ struct Run {
   }
 };
 
+/// Why its mesh is too coarse for the supports, else empty.
+std::string overlap(const shell::Shell& shell, const Scene& scene, Model model) {
+  const std::string reason = shell::overlapping(shell, scene.surroundings);
+  if (reason.empty()) return reason;
+  return fmt::format("{}: choose compare.{}.along and across so that each has its own", reason,
+                     conforms(model) ? "shell_conforming" : "shell_nonconforming");
+}
+
+void add_notes(const Run& run, std::vector<std::string>& notes) {
+  const Scene& scene = run.scene;
+  if (const double shift = shell::largest_shift(run.shell, scene.surroundings); shift > 1e-9 * scene.ribbon.length)
+    notes.push_back(fmt::format("pins or loads stand up to {:.2g} m from their places on the strip", shift));
+  if (run.missed > 0) {
+    notes.push_back(fmt::format("in {:.1f} % of the steps lengths stayed off by more than {:g} %, at most by {:.2g} %",
+                                100 * run.missed_share(), 100 * scene.compare.length_tolerance, 100 * run.worst));
+  }
+  if (run.path && !scene.compare.implicit_metric)
+    notes.push_back("at rest in the metric of masses, which is no equilibrium and depends on the time step");
+}
+
 }  // namespace
 
 ModelResult run_shell(const Scene& scene, Model model, const Observer& observer) {
@@ -213,17 +233,12 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   result.unknowns = shell::degrees_of_freedom(run.shell);
   result.constraints = shell::constraint_count(run.shell);
   result.failure = shell::unsupported(scene.ribbon, scene.surroundings);
+  if (result.failure.empty()) result.failure = overlap(run.shell, scene, model);
   if (result.failure.empty()) result.failure = run.start();
   if (result.failure.empty()) run.go();
   run.judge_lengths();
   result.converged = result.failure.empty();
-  if (run.missed > 0) {
-    result.notes.push_back(
-        fmt::format("in {:.1f} % of the steps lengths stayed off by more than {:g} %, at most by {:.2g} %",
-                    100 * run.missed_share(), 100 * scene.compare.length_tolerance, 100 * run.worst));
-  }
-  if (run.path && !scene.compare.implicit_metric)
-    result.notes.push_back("at rest in the metric of masses, which is no equilibrium and depends on the time step");
+  add_notes(run, result.notes);
   if (result.frames.empty()) {
     run.state = shell::straight_state(run.shell, run.surroundings);
     run.log.frame(0, run.surface());
