@@ -60,7 +60,7 @@ class Compare(ProgramTest):
         self.expect(0, "compare", "hanging.yaml", *SMALL, "--out", "there")
         for model, row in self.table("there").items():
             self.assertAlmostEqual(float(row["gravity"]), -0.05, delta=1e-6, msg=model)
-            self.assertAlmostEqual(float(row["normalized"]), 0, delta=1e-9, msg=model)
+            self.assertAlmostEqual(float(row["normalized"]), 0, delta=1e-6, msg=model)  # the rod stretches
             self.assertLess(float(row["imbalance"]), 1e-4, model)
 
     def test_a_model_that_cannot_do_the_scene_says_so(self):

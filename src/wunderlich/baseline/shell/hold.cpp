@@ -132,8 +132,8 @@ double largest_shift(const Shell& shell, const constraint::Surroundings& surroun
   for (const Support& support : surroundings.supports) {
     if (support.orientation != Orientation::free) continue;
     const std::vector<int> points = pinned_points(shell, support.node);
-    const Vec2 middle =
-        0.5 * (shell.flat[static_cast<std::size_t>(points.front())] + shell.flat[static_cast<std::size_t>(points.back())]);
+    const Vec2 middle = 0.5 * (shell.flat[static_cast<std::size_t>(points.front())] +
+                               shell.flat[static_cast<std::size_t>(points.back())]);
     most = std::max(most, (middle - Vec2(node_u(shell, support.node), 0)).norm());
   }
   for (const constraint::Load& load : surroundings.loads) {
