@@ -19,7 +19,7 @@ const rows: Row[] = [
   ['relative area error', (m) => given(m.area_error, 3)],
   ['diagonal strain, largest', (m) => given(m.diagonal_strain, 3)],
   ['rim stretch', (m) => given(m.rim_stretch, 3)],
-  ['out of balance, over D/w', (m) => given(m.imbalance, 3)],
+  ['out of balance, over D/w (the ribbon: over D)', (m) => given(m.imbalance, 3)],
   ['length error of constraints, at the end', (m) => given(m.length_error, 3)],
   ['steps that missed the tolerance', (m) => (m.missed_steps === null ? '–' : `${number(100 * m.missed_steps, 3)} %`)],
   ['steps', (m) => String(m.steps ?? '–')],
