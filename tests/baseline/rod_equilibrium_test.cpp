@@ -64,7 +64,7 @@ TEST(RodEquilibrium, AveragedCurvatureTakesFewerNodes) {
 TEST(RodEquilibrium, OutOfBalanceIsWhatNothingBears) {
   geometry::RibbonSpec spec = strip(20);
   spec.area_density = 3;
-  const Rod sample = rod::make_rod(spec, rod::physical(spec, 0.3, 1e-3));
+  const Rod sample = rod::make_rod(spec, rod::Stiffness{1, 1, 1, 1});
   constraint::Surroundings surroundings;
   surroundings.supports = {clamp(0, {Vec3::Zero(), straight_frame()}, Vec3::Zero(), 0)};
   surroundings.gravity = Vec3(3, 0, -4);
