@@ -61,8 +61,9 @@ int compare_command(const CompareArguments& arguments) {
       return !interrupt_requested();
     });
   }
-  if (interrupt_requested()) {
-    comparison.models.pop_back();  // the one that was under way
+  const bool cut = comparison.models.back().failure == scene::kInterrupted;  // the one that was under way
+  if (cut) {
+    comparison.models.pop_back();
     comparison.bodies.pop_back();
     std::cerr << fmt::format("{}: interrupted; {} of {} models are done\n", scene.name, comparison.models.size(),
                              models.size());
@@ -73,7 +74,7 @@ int compare_command(const CompareArguments& arguments) {
     print_table(comparison);
     std::cout << folder.string() << "\n";
   }
-  return interrupt_requested() ? interrupted : exit_code(comparison);
+  return cut ? interrupted : exit_code(comparison);
 }
 
 }  // namespace wunderlich::app

@@ -60,6 +60,45 @@ TEST(RodEquilibrium, AveragedCurvatureTakesFewerNodes) {
   EXPECT_LE(std::abs(energy[1] - energy[2]), 0.02 * energy[2]);
 }
 
+// Straight it has no strain: out of balance is all that its nodes weigh, and a torque about it by the width.
+TEST(RodEquilibrium, OutOfBalanceIsWhatNothingBears) {
+  geometry::RibbonSpec spec = strip(20);
+  spec.area_density = 3;
+  const Rod sample = rod::make_rod(spec, rod::Stiffness{1, 1, 1, 1});
+  constraint::Surroundings surroundings;
+  surroundings.supports = {clamp(0, {Vec3::Zero(), straight_frame()}, Vec3::Zero(), 0)};
+  surroundings.gravity = Vec3(3, 0, -4);
+  const double weight = spec.area_density * spec.width * spec.length / 20 * 5;
+  rod::Workspace work;
+  const rod::State state = rod::straight_state(sample);
+  EXPECT_NEAR(rod::net_force(sample, surroundings, state, work), weight, 1e-12);
+  const double torque = 2 * weight * spec.width;
+  surroundings.loads = {{20, constraint::LoadFrame::space, {{0, Vec3::Zero(), Vec3(-torque, 0, 0)}}}};
+  EXPECT_NEAR(rod::net_force(sample, surroundings, state, work), 2 * weight, 1e-12);
+  surroundings.loads = {};
+  surroundings.gravity.setZero();
+  EXPECT_NEAR(rod::net_force(sample, surroundings, state, work), 0, 1e-12);
+}
+
+// A clamp at a place that has no exact number stands: it is not carried along for its rounding.
+TEST(RodEquilibrium, AClampThatStandsDoesNotMove) {
+  const Rod sample = rod::make_rod(strip(20), rod::physical(strip(20), 0.3, 1e-3));
+  const Vec3 place(0.1, 0.7, -1.3);
+  const Quat frame = Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())) * straight_frame();
+  rod::State state = rod::straight_state(sample);
+  const Mat3 turn = (frame * straight_frame().conjugate()).toRotationMatrix();
+  for (Vec3& x : state.x) x = place + turn * x;
+  for (Vec3& m1 : state.reference) m1 = turn * m1;
+  constraint::Surroundings surroundings;
+  surroundings.supports = {clamp(0, {place, frame}, place, 0)};
+  rod::Unknowns unknowns;
+  rod::hold(sample, surroundings.supports, state, 0, true, unknowns);
+  EXPECT_FALSE(rod::supports_moved(unknowns));
+  state.x[1].z() += 1e-10;
+  rod::hold(sample, surroundings.supports, state, 0, true, unknowns);
+  EXPECT_TRUE(rod::supports_moved(unknowns));
+}
+
 TEST(RodEquilibrium, TwistIsUniform) {
   const geometry::RibbonSpec spec = strip(20);
   const Rod sample = rod::make_rod(spec, rod::Stiffness{1e4, 1, 10, 0.7});

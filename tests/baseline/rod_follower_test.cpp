@@ -100,7 +100,8 @@ Helix helix(int n, const rod::Stiffness& s, double kappa, double tau) {
 }
 
 // A torque that turns with the section has no potential. Where bending and twist are equally stiff it alone makes a
-// helix, kappa = M2/B and tau = M3/C; its end turns by 8 rad.
+// helix, kappa = M2/B and tau = M3/C; its end turns by 8 rad. Iterations stay few only with stresses as unknowns and
+// steps judged by the one that follows.   @eq Magisano2017, Deuflhard2011
 TEST(RodFollowers, TorqueFixedInTheSectionMakesTheHelixToSecondOrder) {
   std::vector<double> curvature, torsion;
   for (const int n : {40, 80, 160}) {

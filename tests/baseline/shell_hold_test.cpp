@@ -127,6 +127,36 @@ TEST_P(ShellHold, APinBetweenTwoRowsHoldsTheirMean) {
   }
 }
 
+TEST(ShellLimits, SaysWhereSupportsMeetAndHowFarTheyWereShifted) {
+  const geometry::RibbonSpec strip = strip_of({false, false});
+  const Shell shell = make(Kind::conforming, strip, 6, 3);  // columns at every second node
+  constraint::Surroundings surroundings;
+  for (const int node : {0, 4}) {
+    surroundings.supports.push_back(clamp_at(strip, false));
+    surroundings.supports.back().orientation = constraint::Orientation::free;
+    surroundings.supports.back().node = node;
+  }
+  EXPECT_EQ(overlapping(shell, surroundings), "");
+  EXPECT_NEAR(largest_shift(shell, surroundings), 0, 1e-15);
+  surroundings.supports.push_back(surroundings.supports[1]);
+  EXPECT_NE(overlapping(shell, surroundings), "");
+  surroundings.supports[1].hold_position = {true, false, false};
+  surroundings.supports[2].hold_position = {false, true, true};
+  EXPECT_EQ(overlapping(shell, surroundings), "");  // of one mind
+
+  // Between two columns a pin stands in the middle of two points, and a load on both.
+  surroundings.supports.resize(1);
+  surroundings.supports[0].node = 5;
+  constraint::Load load;
+  load.node = 5;
+  load.keys = {{0, Vec3(1, 2, 3), Vec3::Zero()}};
+  surroundings.loads = {load};
+  EXPECT_NEAR(largest_shift(shell, surroundings), 0, 1e-15);
+  const Shell coarse = make(Kind::conforming, strip, 4, 3);  // a third of the length apart
+  surroundings.loads[0].node = 6;
+  EXPECT_NEAR(largest_shift(coarse, surroundings), 2.0 / 3 - 0.6, 1e-12);
+}
+
 TEST(ShellLimits, SaysWhatItDoesNotDo) {
   geometry::RibbonSpec strip = strip_of({true, true});
   constraint::Surroundings surroundings;

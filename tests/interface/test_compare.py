@@ -25,6 +25,9 @@ class Compare(ProgramTest):
         self.assertGreater(ribbon, 0)
         for model, tolerance in (("rod", 0.15), ("shell-conforming", 0.25)):  # the other shell is softer: docs/baselines.md
             self.assertAlmostEqual(float(rows[model]["normalized"]) / ribbon, 1, delta=tolerance, msg=model)
+        # The weight of 0.1 N hangs below the clamp by q l^4/(8 D) = 1/8 m at the end, 1/20 m in the mean, were it a beam.
+        for model in MODELS[:3]:
+            self.assertAlmostEqual(float(rows[model]["gravity"]) / -0.005, 1, delta=0.25, msg=model)
         self.assertLess(abs(float(rows["ribbon"]["area_error"])), 1e-10)
         self.assertLess(abs(float(rows["ribbon"]["diagonal_strain"])), 1e-10)
         for model in MODELS:  # a small net force, but some
@@ -51,11 +54,22 @@ class Compare(ProgramTest):
             self.assertGreater(float(row["kinetic"]), 0, model)
             self.assertEqual(row["imbalance"], "", model)  # it does not say that it is at rest
 
+    def test_models_hang_straight_and_rest(self):
+        # Flat, with no elastic energy but for rounding; the weight of 0.1 N is half a metre below the clamp in the mean.
+        self.write("hanging.yaml", STRIP.replace("at: start", "at: start\n    tangent: [0, 0, -1]\n    normal: [1, 0, 0]"))
+        self.expect(0, "compare", "hanging.yaml", *SMALL, "--out", "there")
+        for model, row in self.table("there").items():
+            self.assertAlmostEqual(float(row["gravity"]), -0.05, delta=1e-6, msg=model)
+            self.assertAlmostEqual(float(row["normalized"]), 0, delta=1e-6, msg=model)  # the rod stretches
+            self.assertLess(float(row["imbalance"]), 1e-4, model)
+
     def test_a_model_that_cannot_do_the_scene_says_so(self):
         result = self.expect(3, "compare", "ring", "--models", "ribbon,shell-conforming", "--out", "there")
         self.assertIn("shell-conforming: did not converge", result.stderr)
         self.assertIn("open strips", result.stderr)
-        self.assertEqual(self.table("there")["shell-conforming"]["converged"], "0")
+        row = self.table("there")["shell-conforming"]
+        self.assertEqual((row["converged"], row["unknowns"], row["steps"]), ("0", str(3 * 36 * 12), ""))
+        self.assertGreater(int(row["constraints"]), 0)
 
     def rows(self, text, *settings, models="ribbon,rod"):
         """The table of a scene, and what the program said of it."""
@@ -123,6 +137,18 @@ class Compare(ProgramTest):
         self.assertEqual(result.returncode, 3)
         self.assertIn("fall on one of its own", result.stderr)
 
+    def test_a_shell_says_where_supports_are_on_points_of_its_own(self):
+        pins = ("ribbon: {length: 1, width: 0.1, segments: 12}\n"
+                "clamps: [{at: start}]\npins: [{at: {node: 6}}, {at: {node: 7}}]\n"
+                "solver: {method: implicit, duration: 0.01}\n")
+        self.write("pins.yaml", pins)
+        coarse = ["--models", "shell-conforming", "--set", "compare.shell_conforming={along: 5, across: 3}"]
+        result = self.expect(3, "compare", "pins.yaml", *coarse, "--out", "few")
+        self.assertIn("two supports hold one point of the mesh: choose compare.shell_conforming.along", result.stderr)
+        self.write("pins.yaml", pins.replace("{node: 6}", "{node: 3}"))
+        result = self.call("compare", "pins.yaml", *coarse, "--out", "few")
+        self.assertIn(f"up to {1 / 12:.2g} m from their places", result.stderr)
+
     def test_the_rod_says_what_it_leaves_out(self):
         lying = ("ribbon: {length: 0.3, width: 0.03, segments: 10, bending_stiffness: 3e-3, area_density: 0.1}\n"
                  "gravity: [0, 0, -9.81]\n"
@@ -137,6 +163,15 @@ class Compare(ProgramTest):
         _, said = self.rows(lying.replace("FRICTION", "0.5").replace("SELF", "true"), models="rod")
         self.assertIn("note: rod: friction is not modelled", said)
         self.assertIn("note: rod: the rod does not feel itself", said)
+
+    def test_only_what_a_comparison_wrote_is_replaced(self):
+        again = ("compare", "strip.yaml", "--models", "rod", "--out", "there", "--quiet")
+        self.expect(0, *again)
+        self.expect(0, *again)
+        for name in ("mine.obj", "ribbon.obj"):  # the second: a name of a model that was not there
+            mine = self.write(f"there/{name}", "v 0 0 0\n")
+            self.expect_refused(*again, says="not written by wunderlich")
+            mine.unlink()
 
     def test_bad_input(self):
         self.expect_refused("compare", "strip.yaml", "--models", "rood", says=["rood", "rod"])

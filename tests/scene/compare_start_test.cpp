@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "wunderlich/scene/compare.hpp"
 #include "wunderlich/scene/read.hpp"
+#include "wunderlich/solver/equilibrium.hpp"
 
 namespace wunderlich::scene {
 namespace {
@@ -87,6 +89,41 @@ compare: {shell_conforming: {along: 21, across: 3}}
   const ModelResult shell = run_model(scene, Model::shell_conforming, go_on);
   EXPECT_TRUE(shell.converged) << shell.failure;
   EXPECT_NEAR(shell.energy.elastic / ribbon.energy.elastic, 1, 0.08);
+}
+
+// A free strip that spins about its tangent and nothing else: w^3 rho l/12 is its moment of inertia.
+TEST(CompareStart, TheRodSpinsAboutItsTangent) {
+  const Scene scene = scene_of(R"(
+ribbon: {length: 1, width: 0.1, segments: 10, bending_stiffness: 1, area_density: 6}
+initial: {spin: [3, 0, 0]}
+solver: {method: implicit, duration: 0.01, time_step: 0.001}
+compare: {time_step: 0.001}
+)");
+  const ModelResult rod = run_model(scene, Model::rod, [](const RunStatus&) { return true; });
+  EXPECT_TRUE(rod.converged) << rod.failure;
+  EXPECT_NEAR(rod.energy.kinetic, 0.5 * 6 * 1e-3 / 12 * 9, 1e-9);
+}
+
+// Straight from its clamp the ribbon is out of balance by the moment of its whole weight there, and by nothing without.
+TEST(CompareBalance, TheRibbonsIsTheMomentOfItsWeight) {
+  const Scene scene = scene_of(R"(
+ribbon: {length: 1, width: 0.1, segments: 10, bending_stiffness: 1, area_density: 3}
+clamps: [{at: start}]
+gravity: [0, 0, -2]
+solver: {method: equilibrium}
+)");
+  constraint::Surroundings surroundings = scene.surroundings;
+  const geometry::Ribbon ribbon = geometry::make_ribbon(scene.ribbon);
+  for (const double moment : {0.5 * 3 * 0.1 * 2, 0.0}) {
+    if (moment == 0) surroundings.gravity.setZero();
+    const solver::PathProblem path = solver::make_path(ribbon, surroundings, {});
+    solver::PathState state = solver::start_path(path);
+    state.phase = solver::Phase::done;
+    solver::NewtonWorkspace work;
+    const std::optional<double> imbalance = solver::joint_imbalance(path, state, work);
+    ASSERT_TRUE(imbalance.has_value());
+    EXPECT_NEAR(*imbalance, moment, 1e-12);
+  }
 }
 
 }  // namespace

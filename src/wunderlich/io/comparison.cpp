@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "wunderlich/base/version.hpp"
@@ -28,14 +29,15 @@ using Figure = std::optional<double>;  // empty where it says nothing of a model
 struct Column {
   const char* name;
   Figure (*value)(const ModelResult&);
+  bool of_model = false;  // known before it moves
 };
 
 /// Time a simulated second; a path of equilibria has none.
 Figure per_second(const ModelResult& m) { return m.moved_seconds > 0 ? m.wall_seconds / m.moved_seconds : 0; }
 
 constexpr std::array<Column, 19> columns{{
-    {"unknowns", [](const ModelResult& m) -> Figure { return static_cast<double>(m.unknowns); }},
-    {"constraints", [](const ModelResult& m) -> Figure { return static_cast<double>(m.constraints); }},
+    {"unknowns", [](const ModelResult& m) -> Figure { return static_cast<double>(m.unknowns); }, true},
+    {"constraints", [](const ModelResult& m) -> Figure { return static_cast<double>(m.constraints); }, true},
     {"elastic", [](const ModelResult& m) -> Figure { return m.energy.elastic; }},
     {"normalized", [](const ModelResult& m) -> Figure { return m.energy.normalized; }},
     {"kinetic", [](const ModelResult& m) -> Figure { return m.energy.kinetic; }},
@@ -57,7 +59,7 @@ constexpr std::array<Column, 19> columns{{
 
 /// What says something of a shape, or of steps, says nothing of a model that never moved.
 Figure figure(const ModelResult& model, const Column& column) {
-  if (model.steps == 0) return std::nullopt;
+  if (model.steps == 0 && !column.of_model) return std::nullopt;
   const Figure value = column.value(model);
   if (value && !std::isfinite(*value))
     throw std::domain_error(fmt::format("{}: {} is not finite", model.model, column.name));
@@ -157,12 +159,14 @@ bool is_comparison(const std::filesystem::path& folder) {
   if (!std::filesystem::is_regular_file(file, error)) return false;
   const Json data = Json::parse(read_file(file, std::size_t{1} << 24), nullptr, false);
   if (!data.is_object() || data.value("program", "") != program) return false;
+  std::set<std::string> ours{"comparison.json", "comparison.csv", "report.html"};
+  for (const Json& model : data.value("models", Json::array())) {
+    if (model.is_object() && model.contains("model") && model["model"].is_string())
+      ours.insert(model["model"].get<std::string>() + ".obj");
+  }
   // Whatever else is there is somebody else's, and stays.
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const bool ours = name == "comparison.json" || name == "comparison.csv" || name == "report.html" ||
-                      entry.path().extension() == ".obj";
-    if (!ours) return false;
+    if (ours.count(entry.path().filename().string()) == 0) return false;
   }
   return !error;
 }

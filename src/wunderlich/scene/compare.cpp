@@ -43,7 +43,7 @@ ModelResult run_ribbon(const Scene& scene, const Observer& observer) {
   result.method = run.summary.method;
   result.resolution = fmt::format("{} segments", scene.ribbon.segments);
   result.converged = run.summary.converged;
-  result.failure = run.outcome == Outcome::interrupted ? "interrupted" : run.summary.failure;
+  result.failure = run.outcome == Outcome::interrupted ? kInterrupted : run.summary.failure;
   count_ribbon(scene, result);
   result.energy = run.summary.energy;
   if (run.summary.imbalance) result.imbalance = *run.summary.imbalance / scene.ribbon.bending_stiffness;
@@ -118,7 +118,7 @@ Comparison compare(const Scene& scene, const std::vector<Model>& models, const O
     std::vector<double> times;
     for (const Frame& frame : result.frames) times.push_back(frame.time);
     comparison.bodies.push_back(bodies_of(scene, times));
-    if (result.failure == "interrupted") break;
+    if (result.failure == kInterrupted) break;
   }
   return comparison;
 }

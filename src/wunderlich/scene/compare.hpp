@@ -17,9 +17,12 @@ const char* model_name(Model model);
 /// "ribbon,rod": each at most once, at least one. Throws InputError.
 std::vector<Model> parse_models(const std::string& list);
 
+/// The `failure` of a model that the observer ended.
+inline constexpr const char* kInterrupted = "interrupted";
+
 /// One model on the scene. What it cannot do of it, and where it did not get through, is the result's `failure`;
 /// nothing is hidden. Throws nothing for that. An observer that returns false ends it: the result is then not
-/// `converged`, with "interrupted" for a failure.
+/// `converged`, with kInterrupted for a failure.
 ModelResult run_model(const Scene& scene, Model model, const Observer& observer);
 
 /// Throws InputError where the scene has several strips.

@@ -27,7 +27,7 @@ bool ModelLog::count_step(double time, double seconds, int iterations) {
   ++result_.steps;
   iterations_ += iterations;
   const bool goes_on = observer_({"", std::min(1.0, time / until_), static_cast<int>(iterations_)});
-  if (!goes_on) result_.failure = "interrupted";
+  if (!goes_on) result_.failure = kInterrupted;
   return goes_on;
 }
 

@@ -86,8 +86,11 @@ struct Run {
   std::string start() {
     if (!path) {
       const Start start = start_of(scene, motion_ribbon(scene, 0));
-      if (start.failure.empty()) state = rod::state_from(rod, start.shape);
-      return start.failure;
+      if (!start.failure.empty()) return start.failure;
+      state = rod::state_from(rod, start.shape);
+      for (std::size_t j = 0; j < rod.edges(); ++j)
+        state.theta_dot[j] = scene.initial.spin.dot((state.x[j + 1] - state.x[j]).normalized());
+      return {};
     }
     if (rod.is_loop()) {
       state = rod::ring_state(rod);

@@ -26,6 +26,7 @@ constexpr double kBulge = 1e-4;  // over the length: out of its plane, so that a
 constexpr double kDrift = 2e-3;  // over the length: what points move by, in a quarter of the time of loading, at rest
 constexpr double kCreep = 1e-4;  // the same in the implicit metric, which has no jerks
 constexpr double kJerk = 1e-6;   // of the elastic energy: what may move at rest
+constexpr double kFlat = 1e-9;   // of D w/l: what counts as elastic energy of a shell that ends flat
 constexpr double kMaxMissed = 0.5, kMaxOff = 2;  // of the steps; of the tolerance
 constexpr int kRounds = 50;                      // of fast projection in a step; where it locks, more do not help
 
@@ -163,8 +164,10 @@ struct Run {
     if (!path || state.time < loaded || state.time < next_look) return false;
     const bool implicit = options.metric == shell::Metric::implicit;
     const double drift = (implicit ? kCreep : kDrift) * scene.ribbon.length;
-    const bool slow =
-        !implicit || shell::kinetic_energy(shell, state.v) <= kJerk * shell::bending_energy(shell, state.x);
+    const geometry::RibbonSpec& strip = scene.ribbon;
+    const double least = kFlat * strip.bending_stiffness * strip.width / strip.length;  // rounding leaves less than 0
+    const double elastic = std::max(shell::bending_energy(shell, state.x), least);
+    const bool slow = !implicit || shell::kinetic_energy(shell, state.v) <= kJerk * elastic;
     const bool still = slow && before.size() > 0 && (state.x - before).rowwise().norm().maxCoeff() < drift;
     before = state.x;
     next_look = state.time + 0.25 * factor;
@@ -199,6 +202,26 @@ struct Run {
   }
 };
 
+/// Why its mesh is too coarse for the supports, else empty.
+std::string overlap(const shell::Shell& shell, const Scene& scene, Model model) {
+  const std::string reason = shell::overlapping(shell, scene.surroundings);
+  if (reason.empty()) return reason;
+  return fmt::format("{}: choose compare.{}.along and across so that each has its own", reason,
+                     conforms(model) ? "shell_conforming" : "shell_nonconforming");
+}
+
+void add_notes(const Run& run, std::vector<std::string>& notes) {
+  const Scene& scene = run.scene;
+  if (const double shift = shell::largest_shift(run.shell, scene.surroundings); shift > 1e-9 * scene.ribbon.length)
+    notes.push_back(fmt::format("pins or loads stand up to {:.2g} m from their places on the strip", shift));
+  if (run.missed > 0) {
+    notes.push_back(fmt::format("in {:.1f} % of the steps lengths stayed off by more than {:g} %, at most by {:.2g} %",
+                                100 * run.missed_share(), 100 * scene.compare.length_tolerance, 100 * run.worst));
+  }
+  if (run.path && !scene.compare.implicit_metric)
+    notes.push_back("at rest in the metric of masses, which is no equilibrium and depends on the time step");
+}
+
 }  // namespace
 
 ModelResult run_shell(const Scene& scene, Model model, const Observer& observer) {
@@ -210,23 +233,19 @@ ModelResult run_shell(const Scene& scene, Model model, const Observer& observer)
   result.unknowns = shell::degrees_of_freedom(run.shell);
   result.constraints = shell::constraint_count(run.shell);
   result.failure = shell::unsupported(scene.ribbon, scene.surroundings);
+  if (result.failure.empty()) result.failure = overlap(run.shell, scene, model);
   if (result.failure.empty()) result.failure = run.start();
   if (result.failure.empty()) run.go();
   run.judge_lengths();
   result.converged = result.failure.empty();
-  if (run.missed > 0) {
-    result.notes.push_back(
-        fmt::format("in {:.1f} % of the steps lengths stayed off by more than {:g} %, at most by {:.2g} %",
-                    100 * run.missed_share(), 100 * scene.compare.length_tolerance, 100 * run.worst));
-  }
-  if (run.path && !scene.compare.implicit_metric)
-    result.notes.push_back("at rest in the metric of masses, which is no equilibrium and depends on the time step");
+  add_notes(run, result.notes);
   if (result.frames.empty()) {
     run.state = shell::straight_state(run.shell, run.surroundings);
     run.log.frame(0, run.surface());
   }
   result.energy.elastic = shell::bending_energy(run.shell, run.state.x);
   result.energy.kinetic = shell::kinetic_energy(run.shell, run.state.v);
+  result.energy.gravity = shell::gravity_energy(run.shell, scene.surroundings.gravity, run.state.x);
   result.length_error = shell::length_error(run.shell, run.state.x);
   result.missed_steps = run.missed_share();
   result.isometry = geometry::isometry_errors(grid_of(run.shell, run.state.x));

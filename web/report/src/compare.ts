@@ -7,6 +7,7 @@ import { createViewer, type Viewer } from './viewer';
 type Row = [string, (model: ModelRun) => string];
 
 const given = (value: number | null, digits: number) => (value === null ? '–' : number(value, digits));
+const took = (value: number | null, unit = 1) => (value === null ? '–' : seconds(unit * value));
 
 const rows: Row[] = [
   ['method', (m) => m.method],
@@ -18,14 +19,14 @@ const rows: Row[] = [
   ['relative area error', (m) => given(m.area_error, 3)],
   ['diagonal strain, largest', (m) => given(m.diagonal_strain, 3)],
   ['rim stretch', (m) => given(m.rim_stretch, 3)],
-  ['out of balance, over D/w', (m) => given(m.imbalance, 3)],
+  ['out of balance, over D/w (the ribbon: over D)', (m) => given(m.imbalance, 3)],
   ['length error of constraints, at the end', (m) => given(m.length_error, 3)],
   ['steps that missed the tolerance', (m) => (m.missed_steps === null ? '–' : `${number(100 * m.missed_steps, 3)} %`)],
   ['steps', (m) => String(m.steps ?? '–')],
-  ['time a step, median', (m) => seconds(1e-6 * m.step_us_median)],
+  ['time a step, median', (m) => took(m.step_us_median, 1e-6)],
   ['of it', (m) => Object.entries(m.phases_us ?? {}).map(([name, us]) => `${name} ${seconds(1e-6 * us)}`).join(', ') || '–'],
-  ['time in all', (m) => seconds(m.wall_seconds)],
-  ['time a simulated second', (m) => (m.moved_seconds > 0 ? seconds(m.wall_per_second) : '–')],
+  ['time in all', (m) => took(m.wall_seconds)],
+  ['time a simulated second', (m) => (m.moved_seconds ? took(m.wall_per_second) : '–')],
 ];
 
 function showTable(models: ModelRun[]) {

@@ -4,12 +4,13 @@ import { body, bytes, normals, points, type Frame, type Run } from './data';
 export interface ModelRun {
   model: string; method: string; resolution: string; converged: boolean; failure?: string; notes?: string[];
   unknowns: number; constraints: number; phases_us?: Record<string, number>;
-  // Those of a shape are null where the model never moved.
+  // Those of a shape, and of steps, are null where the model never moved.
   normalized: number | null; elastic: number | null; kinetic: number | null; gravity: number | null;
   area_error: number | null; diagonal_strain: number | null; rim_stretch: number | null;
   imbalance: number | null;  // of what says that it is at rest
   length_error: number | null; missed_steps: number | null;
-  steps: number; step_us_median: number; wall_seconds: number; moved_seconds: number; wall_per_second: number;
+  steps: number | null; step_us_median: number | null; wall_seconds: number | null;
+  moved_seconds: number | null; wall_per_second: number | null;
   run: Run;
 }
 

@@ -129,17 +129,15 @@ bool carry_along(const Rod& rod, State& at, Workspace& work) {
 
 }  // namespace
 
-Report balance(const Rod& rod, const Options& options, State& state, Workspace& work) {
+Report balance(const Rod& rod, State& state, Workspace& work) {
   Report report;
   State at = state;
   find_metric(rod, work.unknowns, work.metric);
-  bool supports_move =
-      std::any_of(work.unknowns.given.begin(), work.unknowns.given.end(), [](double x) { return x != 0; });
+  bool supports_move = supports_moved(work.unknowns);
   own_stresses(rod, at, work.stress);
   assemble(rod, work.objective, at, work.unknowns, work.system, work.stress);
-  while (report.iterations < std::min(kMostRounds, options.max_iterations)) {
+  while (report.iterations < kMostRounds) {
     ++report.iterations;
-    ++report.factorisations;
     report.outcome = Outcome::singular;
     if (!factor_jacobian(work)) return report;
     report.outcome = Outcome::blocked;
@@ -148,8 +146,7 @@ Report balance(const Rod& rod, const Options& options, State& state, Workspace& 
     const double length = newton_step(work.system.gradient, work, work.step);
     expand(work.unknowns, work.step, 0, work.increment);
     const Size size = size_of(rod, work.increment);
-    report.last_step = size.step;
-    if (size.step <= options.tolerance) {
+    if (size.step <= kLastStep) {
       move(rod, at, work.increment, 1, work.trial);
       swap_shapes(state, std::isfinite(value(rod, work.objective, work.trial)) ? work.trial : at);
       report.outcome = Outcome::converged;

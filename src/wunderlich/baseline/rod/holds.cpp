@@ -14,6 +14,7 @@ using constraint::Support;
 
 namespace {
 
+constexpr double kRounding = 1e-13;    // over the length, or of a turn: supports that stand do not move
 constexpr int kFree = -1, kHeld = -2;  // in `number`, before unknowns are counted; else: shared with that coordinate
 
 std::size_t edge_of(const Rod& rod, const Support& support) {
@@ -71,6 +72,12 @@ void anchor(const State& state, Unknowns& u) {
   }
 }
 
+void drop_rounding(const Rod& rod, Unknowns& u) {
+  for (std::size_t c = 0; c < u.given.size(); ++c) {
+    if (std::abs(u.given[c]) < kRounding * (c % 4 == 3 ? 1 : rod.length)) u.given[c] = 0;
+  }
+}
+
 void count_unknowns(const Rod& rod, Unknowns& u) {
   std::vector<int> shared = u.number;
   std::fill(u.number.begin(), u.number.end(), -1);
@@ -123,6 +130,7 @@ void hold(const Rod& rod, const std::vector<Support>& supports, const State& sta
     any = true;
   }
   if (!any && anchored) anchor(state, u);
+  drop_rounding(rod, u);
   count_unknowns(rod, u);
   if (rod.is_loop()) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -131,6 +139,10 @@ void hold(const Rod& rod, const std::vector<Support>& supports, const State& sta
     }
   }
   find_bandwidth(rod, u);
+}
+
+bool supports_moved(const Unknowns& unknowns) {
+  return std::any_of(unknowns.given.begin(), unknowns.given.end(), [](double x) { return x != 0; });
 }
 
 }  // namespace wunderlich::baseline::rod

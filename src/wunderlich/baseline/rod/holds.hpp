@@ -23,4 +23,7 @@ struct Unknowns {
 void hold(const Rod& rod, const std::vector<constraint::Support>& supports, const State& state, double time,
           bool anchored, Unknowns& unknowns);
 
+/// Do supports move at all, by more than what rounding makes of those that stand?
+bool supports_moved(const Unknowns& unknowns);
+
 }  // namespace wunderlich::baseline::rod

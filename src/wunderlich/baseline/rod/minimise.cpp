@@ -9,7 +9,7 @@ namespace wunderlich::baseline::rod {
 namespace {
 
 constexpr double kLeastShift = 1e-4;  // over soft/length^4: what needs no more is neutral to rounding
-constexpr int kMostShifts = 24, kMostHalvings = 40, kMostKicks = 30;
+constexpr int kMostShifts = 24, kMostHalvings = 40, kMostKicks = 30, kMostIterations = 500;
 
 /// Factors the Hessian with a shift; returns the number of negative modes, at least 1 where it cannot be factored.
 int factor_with(double shift, Workspace& work) {
@@ -27,7 +27,6 @@ bool factor_shifted(const Rod& rod, Workspace& work, double& shift, Report& repo
   shift = 0;
   for (int tries = 0; tries < kMostShifts; ++tries) {
     const int negative = factor_with(shift, work);
-    ++report.factorisations;
     if (tries == 0) report.negative_modes = negative;
     if (negative == 0) return true;
     shift = next;
@@ -46,9 +45,7 @@ double norm(const std::vector<double>& v) {
 /// energy. False if either way is barred.
 bool follow_supports(const Rod& rod, bool predict, State& state, Workspace& work, Report& report) {
   const Objective& objective = work.objective;
-  const bool moved =
-      std::any_of(work.unknowns.given.begin(), work.unknowns.given.end(), [](double x) { return x != 0; });
-  if (!moved) return true;
+  if (!supports_moved(work.unknowns)) return true;
   work.step.assign(static_cast<std::size_t>(work.unknowns.count), 0.0);
   expand(work.unknowns, work.step, 1, work.increment);
   if (size_of(rod, work.increment).share < 0.5) return false;
@@ -128,6 +125,10 @@ const char* outcome_name(Outcome outcome) {
       return "iteration limit";
     case Outcome::line_search_failed:
       return "no step lowers the energy";
+    case Outcome::indefinite:
+      return "no shift makes the energy's second derivative positive";
+    case Outcome::saddle:
+      return "at a saddle of the energy, with no way down found";
     case Outcome::stalled:
       return "no step along Newton's brings the forces nearer to balance";
     case Outcome::singular:
@@ -151,18 +152,18 @@ Report minimise(const Rod& rod, const Options& options, State& state, Workspace&
     report.outcome = Outcome::blocked;
     return report;
   }
-  while (report.iterations < options.max_iterations) {
+  int kicks = 0;  // times it left a stationary point that was no minimum
+  while (report.iterations < kMostIterations) {
     ++report.iterations;
     assemble(rod, work.objective, at, work.unknowns, work.system);
-    report.gradient = norm(work.system.gradient);
-    if (!factor_shifted(rod, work, shift, report)) break;
+    report.outcome = Outcome::indefinite;
+    if (!factor_shifted(rod, work, shift, report)) return report;
     work.step.resize(work.system.gradient.size());
     for (std::size_t k = 0; k < work.step.size(); ++k) work.step[k] = -work.system.gradient[k];
     math::solve(work.factors, work.step);
     expand(work.unknowns, work.step, 0, work.increment);
     const Size size = size_of(rod, work.increment);
-    report.last_step = size.step;
-    if (size.step <= options.tolerance) {
+    if (size.step <= kLastStep) {
       const double length = rod.length;
       const double neutral = 1.1 * kLeastShift * rod.stiffness.soft / (length * length * length * length);
       if (shift <= neutral || !options.leave_saddles) {
@@ -172,7 +173,8 @@ Report minimise(const Rod& rod, const Options& options, State& state, Workspace&
         report.outcome = Outcome::converged;
         return report;
       }
-      if (report.kicks++ == kMostKicks || !kick(rod, shift, now, at, work, now)) break;
+      report.outcome = Outcome::saddle;
+      if (kicks++ == kMostKicks || !kick(rod, shift, now, at, work, now)) return report;
       continue;
     }
     if (!search(rod, size.share, now, at, work, now)) {
@@ -180,6 +182,7 @@ Report minimise(const Rod& rod, const Options& options, State& state, Workspace&
       return report;
     }
   }
+  report.outcome = Outcome::iteration_limit;
   return report;
 }
 

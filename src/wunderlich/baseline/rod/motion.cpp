@@ -51,7 +51,7 @@ void tie(const Rod& rod, const Damping& damping, double h, const State& state, O
 }
 
 Report solve(const Rod& rod, const Options& options, State& state, Workspace& work) {
-  return work.objective.has_potential() ? minimise(rod, options, state, work) : balance(rod, options, state, work);
+  return work.objective.has_potential() ? minimise(rod, options, state, work) : balance(rod, state, work);
 }
 
 }  // namespace

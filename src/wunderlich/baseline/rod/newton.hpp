@@ -5,24 +5,23 @@
 
 namespace wunderlich::baseline::rod {
 
+/// Of `minimise`; `balance` always predicts, and minds no saddles.
 struct Options {
-  double tolerance = 1e-8;  ///< on the last step: displacement / length, turn of a section [rad]
-  int max_iterations = 500;
-  bool predict = true;        ///< supports that move carry the rest along as the linearised rod would follow, if that
-                              ///< takes less energy than leaving it where it is
+  /// Supports that move carry the rest along as the linearised rod would follow, if that takes less energy than leaving
+  /// it where it is.
+  bool predict = true;
   bool leave_saddles = true;  ///< go on from a stationary point of the energy that has negative modes
 };
 
-enum class Outcome { converged, iteration_limit, line_search_failed, stalled, singular, blocked };
+/// Steps are small enough below this: displacement / length, turn of a section [rad].
+constexpr double kLastStep = 1e-8;
+
+enum class Outcome { converged, iteration_limit, line_search_failed, indefinite, saddle, stalled, singular, blocked };
 
 struct Report {
   Outcome outcome = Outcome::iteration_limit;
   int iterations = 0;
-  int factorisations = 0;
-  int kicks = 0;           ///< times it left a stationary point that was no minimum
   int negative_modes = 0;  ///< of the Hessian where it stopped; not counted where loads have no potential
-  double last_step = 0;
-  double gradient = 0;  ///< norm by the unknowns where it stopped [N, N m]
   bool converged() const { return outcome == Outcome::converged; }
 };
 const char* outcome_name(Outcome outcome);
@@ -48,6 +47,6 @@ Report minimise(const Rod& rod, const Options& options, State& state, Workspace&
 /// which need not be symmetric, and stresses as unknowns beside positions: edges that turn lengthen to second order,
 /// and stretching is so stiff that the forces of that would leave short steps only.   @eq Magisano2017 Steps are
 /// shortened until the step that would come next is shorter than this one.   @eq Deuflhard2011
-Report balance(const Rod& rod, const Options& options, State& state, Workspace& work);
+Report balance(const Rod& rod, State& state, Workspace& work);
 
 }  // namespace wunderlich::baseline::rod

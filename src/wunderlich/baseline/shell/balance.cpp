@@ -24,13 +24,14 @@ std::optional<double> net_force(const Shell& shell, const constraint::Surroundin
   ImplicitSystem system = make_implicit_system(shell, hold, mass_matrices(hold));
   const Eigen::Map<const Eigen::VectorXd> mass(shell.mass.data(), shell.point_count());
   Points plain = state.x;  // where putting lengths right alone moves it
-  if (!move_implicitly(system, shell, hold, Points::Zero(shell.point_count(), 3), plain)) return std::nullopt;
+  if (!factor_at(system, hold, state.x)) return std::nullopt;
+  move_as_factored(system, shell, hold, Points::Zero(shell.point_count(), 3), plain);
   Points force = -(shell.bending * state.x);
   add_loads(shell, surroundings, state.x, state.time, force);
   // The system's rows give a little, and take a share only of what they could where the shell is nearly flat.
   for (int pass = 0; pass < kMostPasses; ++pass) {
     Points pushed = state.x;
-    if (!move_implicitly(system, shell, hold, force, pushed)) return std::nullopt;
+    move_as_factored(system, shell, hold, force, pushed);
     const Points left = mass.asDiagonal() * (pushed - plain);
     const double taken = (force - left).norm();
     force = left;

@@ -111,6 +111,40 @@ std::string unsupported(const geometry::RibbonSpec& strip, const constraint::Sur
   return {};
 }
 
+std::string overlapping(const Shell& shell, const constraint::Surroundings& surroundings) {
+  std::array<std::vector<bool>, 3> owned;
+  for (auto& axis : owned) axis.assign(static_cast<std::size_t>(shell.point_count()), false);
+  for (const Support& support : surroundings.supports) {
+    const std::vector<int> points = held_points(shell, support);
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!support.hold_position[a] && !moves_as_one(support)) continue;
+      for (const int p : points) {
+        if (owned[a][static_cast<std::size_t>(p)]) return "two supports hold one point of the mesh";
+        owned[a][static_cast<std::size_t>(p)] = true;
+      }
+    }
+  }
+  return {};
+}
+
+double largest_shift(const Shell& shell, const constraint::Surroundings& surroundings) {
+  double most = 0;
+  for (const Support& support : surroundings.supports) {
+    if (support.orientation != Orientation::free) continue;
+    const std::vector<int> points = pinned_points(shell, support.node);
+    const Vec2 middle = 0.5 * (shell.flat[static_cast<std::size_t>(points.front())] +
+                               shell.flat[static_cast<std::size_t>(points.back())]);
+    most = std::max(most, (middle - Vec2(node_u(shell, support.node), 0)).norm());
+  }
+  for (const constraint::Load& load : surroundings.loads) {
+    const std::vector<int> points = column_of(shell, load.node);
+    double u = 0;
+    for (const int p : points) u += shell.flat[static_cast<std::size_t>(p)].x() / static_cast<double>(points.size());
+    most = std::max(most, std::abs(u - node_u(shell, load.node)));
+  }
+  return most;
+}
+
 Hold make_hold(const Shell& shell, const constraint::Surroundings& surroundings, double time) {
   const auto count = static_cast<std::size_t>(shell.point_count());
   Hold hold;

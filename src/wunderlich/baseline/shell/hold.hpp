@@ -26,6 +26,12 @@ struct Hold {
 /// What the shells do not do of a scene, as a sentence; empty if they do it all.
 std::string unsupported(const geometry::RibbonSpec& strip, const constraint::Surroundings& surroundings);
 
+/// Where two supports would hold a coordinate of one point, that as a sentence; else empty.
+std::string overlapping(const Shell& shell, const constraint::Surroundings& surroundings);
+
+/// How far a pin or a load is from its place on the strip, at most [m].
+double largest_shift(const Shell& shell, const constraint::Surroundings& surroundings);
+
 /// The clamps and pins in force in a step that starts at `time`. A clamp holds the points at and beyond its node if
 /// that is an end of the strip, else the columns beside its segment; a pin the point nearest to the centerline at its
 /// node, or the mean of two.

@@ -103,9 +103,15 @@ ImplicitSystem make_implicit_system(const Shell& shell, const Hold& hold, const 
   return system;
 }
 
-bool move_implicitly(ImplicitSystem& system, const Shell& shell, const Hold& hold, const Points& push, Points& x) {
+bool factor_at(ImplicitSystem& system, const Hold& hold, const Points& x) {
   system.right.setZero();
   linearise(system, hold, x);
+  system.factor->factorize(system.matrix);
+  return system.factor->info() == Eigen::Success;
+}
+
+void move_as_factored(ImplicitSystem& system, const Shell& shell, const Hold& hold, const Points& push, Points& x) {
+  system.right.head(system.first[3]).setZero();
   int row = system.first[3] + static_cast<int>(system.rows.size());
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
@@ -117,10 +123,13 @@ bool move_implicitly(ImplicitSystem& system, const Shell& shell, const Hold& hol
     system.right.segment(row, shell.boundary.rows()) = -(shell.boundary * x.col(axis));
     row += static_cast<int>(shell.boundary.rows());
   }
-  system.factor->factorize(system.matrix);
-  if (system.factor->info() != Eigen::Success) return false;
   const Eigen::VectorXd solution = system.factor->solve(system.right);
   for (std::size_t a = 0; a < 3; ++a) add_change(hold, a, solution.segment(system.first[a], hold.unknown_count[a]), x);
+}
+
+bool move_implicitly(ImplicitSystem& system, const Shell& shell, const Hold& hold, const Points& push, Points& x) {
+  if (!factor_at(system, hold, x)) return false;
+  move_as_factored(system, shell, hold, push, x);
   return true;
 }
 

@@ -29,4 +29,9 @@ ImplicitSystem make_implicit_system(const Shell& shell, const Hold& hold, const 
 /// @eq Goldenthal2007
 bool move_implicitly(ImplicitSystem& system, const Shell& shell, const Hold& hold, const Points& push, Points& x);
 
+/// The two halves of it: linearises at x and factors the matrix; then how the push moves the points from there, as
+/// often as is wanted.
+bool factor_at(ImplicitSystem& system, const Hold& hold, const Points& x);
+void move_as_factored(ImplicitSystem& system, const Shell& shell, const Hold& hold, const Points& push, Points& x);
+
 }  // namespace wunderlich::baseline::shell

@@ -13,9 +13,13 @@ Vec3 at(const Points& x, int row) { return x.row(row).transpose(); }
 
 void lump_masses(const std::vector<std::array<int, 3>>& points_of_triangles, Shell& shell) {
   shell.mass.assign(shell.flat.size(), 0);
-  for (const auto& points : points_of_triangles) {
-    for (const int p : points)
-      shell.mass[static_cast<std::size_t>(p)] += shell.strip.area_density * shell.mesh.triangle_area() / 3;
+  shell.strip_mass.assign(shell.flat.size(), 0);
+  const double third = shell.strip.area_density * shell.mesh.triangle_area() / 3;
+  for (std::size_t t = 0; t < points_of_triangles.size(); ++t) {
+    for (const int p : points_of_triangles[t]) {
+      shell.mass[static_cast<std::size_t>(p)] += third;
+      if (!shell.mesh.ghost[t]) shell.strip_mass[static_cast<std::size_t>(p)] += third;
+    }
   }
 }
 
@@ -66,6 +70,13 @@ double kinetic_energy(const Shell& shell, const Points& v) {
   double energy = 0;
   for (int p = 0; p < shell.point_count(); ++p)
     energy += 0.5 * shell.mass[static_cast<std::size_t>(p)] * v.row(p).squaredNorm();
+  return energy;
+}
+
+double gravity_energy(const Shell& shell, const Vec3& gravity, const Points& x) {
+  double energy = 0;
+  for (int p = 0; p < shell.point_count(); ++p)
+    energy -= shell.strip_mass[static_cast<std::size_t>(p)] * gravity.dot(at(x, p));
   return energy;
 }
 

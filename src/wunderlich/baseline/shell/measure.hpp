@@ -18,6 +18,9 @@ double length_error(const Shell& shell, const Points& x);
 
 double kinetic_energy(const Shell& shell, const Points& v);
 
+/// Of the strip without ghosts, 0 at the origin [J].
+double gravity_energy(const Shell& shell, const Vec3& gravity, const Points& x);
+
 /// 3 a point, without those of ghosts.
 int degrees_of_freedom(const Shell& shell);
 /// Scalar rows: lengths, and 3 a boundary vertex in a nonconforming shell.

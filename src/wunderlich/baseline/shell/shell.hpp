@@ -32,8 +32,9 @@ struct Length {
 struct Shell {
   geometry::RibbonSpec strip;
   StripMesh mesh;
-  std::vector<Vec2> flat;    ///< (u, v) of the points in the flat strip [m]; vertices, or midpoints of edges
-  std::vector<double> mass;  ///< of the points [kg]; ghosts weigh too, which only a clamp that slides feels
+  std::vector<Vec2> flat;          ///< (u, v) of the points in the flat strip [m]; vertices, or midpoints of edges
+  std::vector<double> mass;        ///< of the points [kg]; ghosts weigh too, which only a clamp that slides feels
+  std::vector<double> strip_mass;  ///< the same of the strip alone, without ghosts [kg]
   std::vector<std::vector<Length>> lengths;  ///< in sets that are enforced one after the other
   Sparse bending;                            ///< K, so that the elastic energy is tr(x^T K x)/2 [N/m]
   Sparse boundary;                           ///< rows whose product with x must vanish; none in a conforming shell
