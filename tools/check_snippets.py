@@ -47,7 +47,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 [ ! -f "$scene" ] || scene=$PWD/$scene
-exec ROOT/run "$scene" "${more[@]}" --out "$PWD/$out"
+exec flock ROOT/build ROOT/run "$scene" "${more[@]}" --out "$PWD/$out"
 """
 
 

@@ -130,7 +130,13 @@ int run_command(const RunArguments& arguments) {
   }
 
   const StoredRun run{start.scene, std::move(result.progress), result.outcome};
-  io::write_run_folder(folder, output_of(run, result.summary, report::report_template()), formats);
+  const io::RunOutput output = output_of(run, result.summary, report::report_template());
+  try {
+    io::write_run_folder(folder, output, formats);
+  } catch (const InputError&) {  // an encoder that fails must not cost the run
+    io::write_run_folder(folder, output, {});
+    throw;
+  }
   if (!arguments.quiet) report(run, result.summary, folder);
   return exit_code(run.outcome);
 }

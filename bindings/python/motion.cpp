@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -20,9 +21,13 @@ using constraint::Support;
 using constraint::Surroundings;
 using Numbers = std::array<double, 3>;
 
-Vec3 vector(const Numbers& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+Vec3 vector(const Numbers& numbers) {
+  const Vec3 vector{numbers[0], numbers[1], numbers[2]};
+  if (!vector.allFinite()) throw py::value_error("a vector has a component that is no finite number");
+  return vector;
+}
 
-/// A stepper, and its states as Python sees them: they change only while no other Python thread runs.
+/// A stepper, and its states as Python sees them: they change only while Python's lock is held.
 class Motion {
  public:
   Motion(scene::Scene scene, const std::vector<const geometry::State*>& start) {
@@ -101,6 +106,7 @@ void set_gravity(Motion& motion, const Numbers& gravity) {
 /// `rotation` about the world's axes, then `turn` about the support's own tangent; what is not given stays.
 void move(Motion& motion, std::size_t strip, std::size_t support, const std::optional<Numbers>& position,
           const Numbers& rotation, double turn, double until) {
+  if (!std::isfinite(turn)) throw py::value_error("turn: not a finite number");
   const double now = motion.stepper().time();
   change(motion, strip, [&](Surroundings& s) {
     constraint::Motion& path = support_of(s, support).motion;

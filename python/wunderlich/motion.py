@@ -38,15 +38,20 @@ class Motion:
         if self._native.failure:
             raise NotConverged(f"{self.scene.name}: {self._native.failure}")
 
+    def _later(self, name: str, duration: float) -> float:
+        """The time in `duration` [s]; one too short to be told from now is refused."""
+        if not self.time < self.time + duration < float("inf"):
+            raise ValueError(f"{name}: {duration} s is no time to go on by")
+        return self.time + duration
+
     def step(self, dt: float | None = None) -> None:
         """One step: to the next multiple of the scene's time step, or, with `dt` [s], by so much at once.
 
         A step that fails is halved, up to eight times. Raises NotConverged if that did not help; the state is then the
         last good one, and what is imposed can be changed. Other Python threads go on meanwhile.
         """
-        if dt is not None and not 0 < dt < float("inf"):
-            raise ValueError(f"dt: {dt} s is no time to go on by")
-        if not self._native.step(0.0 if dt is None else self.time + dt):
+        until = 0.0 if dt is None else self._later("dt", dt)
+        if not self._native.step(until):
             self._check()
 
     def reset(self) -> None:
@@ -103,11 +108,9 @@ class Motion:
         by less than half a turn. turn: then about its own tangent [rad], by as many turns as you like. over: the time it
         takes [s]; one time step of the scene without.
         """
-        duration = self.scene.time_step if over is None else over
-        if not 0 < duration < float("inf"):
-            raise ValueError(f"over: {duration} s is no time to move in")
+        until = self._later("over", self.scene.time_step if over is None else over)
         place = None if position is None else [float(x) for x in position]
-        self._native.move(strip, support, place, [float(x) for x in rotation], float(turn), self.time + duration)
+        self._native.move(strip, support, place, [float(x) for x in rotation], float(turn), until)
 
     def hold(self, node: int, *, strip: int = 0) -> int:
         """Pins a node where it is; the number of the new support, for `move` and `release`."""

@@ -29,9 +29,20 @@ class Steps(unittest.TestCase):
         self.assertAlmostEqual(motion.time, 0.003, delta=1e-15)
         motion.step()
         self.assertAlmostEqual(motion.time, 0.004, delta=1e-15)
-        for dt in [0, -1, float("nan"), float("inf")]:
+        for dt in [0, -1, 1e-20, float("nan"), float("inf")]:
             with self.assertRaises(ValueError):
                 motion.step(dt)
+            with self.assertRaises(ValueError):
+                motion.move(0, (0, 0, 0), over=dt)
+        for bad in [float("nan"), float("inf")]:
+            with self.assertRaises(ValueError):
+                motion.gravity = (0, 0, bad)
+            with self.assertRaises(ValueError):
+                motion.move(0, (0, bad, 0))
+            with self.assertRaises(ValueError):
+                motion.move(0, turn=bad)
+        motion.step()
+        self.assertAlmostEqual(motion.time, 0.006, delta=1e-15)
 
     def test_views_follow_and_outlive(self):
         motion = wunderlich.Motion("swing", {"ribbon.segments": 12})
