@@ -168,6 +168,14 @@ bool guarded(const Call& call) {
   return false;
 }
 
+/// The same of a call whose failure `wl_failure` gives.
+template <class Call>
+bool guarded_step(const Call& call) {
+  if (guarded(call)) return true;
+  session->fail(answer);
+  return false;
+}
+
 }  // namespace
 
 #define EXPORT extern "C" __attribute__((used, visibility("default")))
@@ -223,15 +231,16 @@ EXPORT int wl_resolve() {
 
 /// Is the session on the path to its equilibrium?
 EXPORT int wl_on_path() { return session->on_path() ? 1 : 0; }
-/// Follows it for some milliseconds. 0: over.
+/// Follows it for some milliseconds. 0: over, or it failed; see wl_failure.
 EXPORT int wl_follow(double milliseconds) {
   bool more = false;
-  const bool done = guarded([&] { more = session->follow(milliseconds); });
+  const bool done = guarded_step([&] { more = session->follow(milliseconds); });
   return done && more ? 1 : 0;
 }
 /// One step [s]. 0: it failed, 2: it went well, but something else could not be done; see wl_failure.
 EXPORT int wl_step(double seconds) {
-  if (!session->step(seconds)) return 0;
+  bool taken = false;
+  if (!guarded_step([&] { taken = session->step(seconds); }) || !taken) return 0;
   return session->failure().empty() ? 1 : 2;
 }
 /// Why the last step or the path failed: the answer.
@@ -244,11 +253,12 @@ EXPORT int wl_summary() {
     answer = io::summary_json(*session->summary());
   });
 }
-EXPORT void wl_refresh() { refresh(); }
+/// 0: what there is cannot be drawn; the answer says why.
+EXPORT int wl_refresh() { return guarded(refresh); }
 
-EXPORT void wl_set(double length, double width, double stiffness, double twist, double damping, double gx, double gy,
-                   double gz) {
-  session->set({length, width, stiffness, twist, damping, Vec3(gx, gy, gz)});
+EXPORT int wl_set(double length, double width, double stiffness, double twist, double damping, double gx, double gy,
+                  double gz) {
+  return guarded([&] { session->set({length, width, stiffness, twist, damping, Vec3(gx, gy, gz)}); });
 }
 EXPORT void wl_grab(int strip, int node) { session->grab(static_cast<std::size_t>(strip), node); }
 EXPORT void wl_drag(double x, double y, double z) { session->drag(Vec3(x, y, z)); }

@@ -153,6 +153,11 @@ void Session::remake(const Edit& edit) {
   scene::Scene scene = motion_->scene();
   std::vector<geometry::State> states = motion_->states();
   begin_at(scene, motion_->time());
+  // Supports that are released go, and the others' numbers change: a hand no longer knows its own.
+  const auto supports = [&](const scene::Scene& all) {
+    return scene::strips_of(all)[hand_->strip]->surroundings.supports.size();
+  };
+  if (hand_ && supports(scene) != supports(motion_->scene())) hand_.reset();
   elapsed_ += motion_->time();
   edit(scene, states);
   start_motion(std::move(scene), std::move(states));
@@ -351,6 +356,8 @@ bool Session::step(double seconds) {
     failure_ = motion_->failure();
   } catch (const InputError& error) {
     failure_ = error.what();
+  } catch (const std::exception& error) {
+    failure_ = std::string("this should not happen: ") + error.what();
   }
   // The last good state, with everything where it is there.
   const bool pulled = hand_ || wanted_.twist != now_.twist || twisted_;

@@ -52,6 +52,8 @@ class Session {
   double pace() const { return pace_; }                    ///< seconds of the motion that are shown in one second
   double step_length() const { return step_; }             ///< longest step [s]
   const std::string& failure() const { return failure_; }  ///< why the path or the last step failed; empty
+  /// The path or the last step failed for a reason from outside.
+  void fail(const std::string& reason) { failure_ = reason; }
   /// Of the path when it is over.
   const std::optional<Summary>& summary() const { return summary_; }
   double share_done() const { return share_; }  ///< of the path

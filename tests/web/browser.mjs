@@ -205,6 +205,25 @@ async function badScene(page) {
   check(await page.locator('#message').isHidden(), 'an edited scene runs');
 }
 
+/** What should not happen: a frame fails. */
+async function badFrame(page) {
+  await choose(page, 'cantilever');
+  await page.evaluate(() => {
+    const find = document.getElementById;
+    document.getElementById = () => {
+      document.getElementById = find;
+      throw new Error('for a test');
+    };
+  });
+  await page.waitForFunction(() => !window.wunderlich.playing(), undefined, { timeout: 20000 });
+  const said = await page.textContent('#status');
+  check((await bad(page)) && /for a test/.test(said), `a frame that fails pauses and says why: ${said}`);
+  const { time } = await page.evaluate(() => window.wunderlich.numbers());
+  await page.click('#play');
+  await page.waitForFunction((t) => window.wunderlich.numbers().time > t, time, { timeout: 20000 });
+  check(true, 'and Play goes on');
+}
+
 async function touch(browser, address) {
   const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
   const page = await open(context, address);
@@ -260,7 +279,7 @@ try {
   const share = await drawn(page, png);
   check(share > 0.02, `the ribbon covers ${(100 * share).toFixed(1)} % of its picture`);
   await page.screenshot({ path: path.join(shots, 'desktop.png'), fullPage: true });
-  const parts = { mouse, keyboard, sliders, shareLink, downloads, badScene, times };
+  const parts = { mouse, keyboard, sliders, shareLink, downloads, badScene, badFrame, times };
   const wanted = process.env.ONLY?.split(',') ?? Object.keys(parts);
   for (const name of wanted) {
     if (!parts[name]) continue;

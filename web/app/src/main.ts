@@ -50,15 +50,18 @@ class Page {
   load(text: string, name: string): boolean {
     const message = byId('message');
     try {
-      this.info = this.simulator.load(text, name);
+      this.begin(this.simulator.load(text, name), text, name);
     } catch (error) {
-      if (!(error instanceof SimulatorError)) throw error;
       message.hidden = false;
-      message.textContent = error.message;
-      this.pointAt(error.message);
+      message.textContent = (error as Error).message;
+      if (error instanceof SimulatorError) this.pointAt(error.message);
       return false;
     }
     message.hidden = true;
+    return true;
+  }
+  private begin(info: SceneInfo, text: string, name: string) {
+    this.info = info;
     [this.text, this.name] = [text, name];
     this.hand.forget();
     byId<HTMLTextAreaElement>('text').value = text;
@@ -74,7 +77,6 @@ class Page {
     this.setPlaying(true);
     this.say(this.info.failure, this.info.failure !== '');
     byId('kept').textContent = '';
-    return true;
   }
 
   /** The scene with other values of some keys. */
@@ -164,7 +166,17 @@ class Page {
     this.behind += 0.05 * ((seconds - Math.max(0, left)) / seconds - this.behind);
   }
 
+  /** A frame; one that fails pauses and says why, and the next one is asked for all the same. */
   tick(now: number) {
+    requestAnimationFrame((time) => this.tick(time));
+    try {
+      this.frame(now);
+    } catch (error) {
+      this.setPlaying(false);
+      this.say(`Paused: ${(error as Error).message}`, true);
+    }
+  }
+  private frame(now: number) {
     const passed = Math.min(longest, (now - this.before) / 1000);
     const gap = now - this.before;
     this.before = now;
@@ -184,7 +196,6 @@ class Page {
     this.meter.add(middle - start, drawing, gap);
     this.slowFrames = Math.max(drawing, gap - (middle - start)) > slow ? this.slowFrames + 1 : 0;
     if (this.slowFrames === patience) this.stage.plainly();
-    requestAnimationFrame((time) => this.tick(time));
   }
 
   private show(now: number) {

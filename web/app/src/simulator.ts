@@ -89,10 +89,12 @@ export class Simulator {
     return new Uint8Array(this.memory.buffer.slice(where, where + this.call.wl_answer_size()) as ArrayBuffer);
   }
   private answer(): string { return new TextDecoder().decode(this.answerBytes()); }
+  private done(done: number) {
+    if (!done) throw new SimulatorError(this.answer());
+  }
   private asked(done: number): string {
-    const answer = this.answer();
-    if (!done) throw new SimulatorError(answer);
-    return answer;
+    this.done(done);
+    return this.answer();
   }
 
   scenes(): ShippedScene[] { this.call.wl_scenes(); return JSON.parse(this.answer()); }
@@ -119,9 +121,9 @@ export class Simulator {
   /** What the program writes as summary.json; of the path when it is over. */
   // eslint-disable-next-line @typescript-eslint/no-explicit-any
   summary(): any { return JSON.parse(this.asked(this.call.wl_summary())); }
-  refresh() { this.call.wl_refresh(); }
+  refresh() { this.done(this.call.wl_refresh()); }
 
-  set(s: Settings) { this.call.wl_set(s.length, s.width, s.stiffness, s.twist, s.damping, ...s.gravity); }
+  set(s: Settings) { this.done(this.call.wl_set(s.length, s.width, s.stiffness, s.twist, s.damping, ...s.gravity)); }
   grab(strip: number, node: number) { this.call.wl_grab(strip, node); }
   drag(x: number, y: number, z: number) { this.call.wl_drag(x, y, z); }
   turn(angle: number) { this.call.wl_turn(angle); }
@@ -170,7 +172,7 @@ export class Simulator {
   glb(): Uint8Array<ArrayBuffer> { return this.bytes(this.call.wl_glb()); }
   pattern(): Uint8Array<ArrayBuffer> { return this.bytes(this.call.wl_pattern()); }
   private bytes(done: number): Uint8Array<ArrayBuffer> {
-    if (!done) throw new SimulatorError(this.answer());
+    this.done(done);
     return this.answerBytes();
   }
 }
