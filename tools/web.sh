@@ -15,6 +15,10 @@ while [ $# -gt 0 ]; do
     *) usage ;;
   esac
 done
+if ! [[ $port =~ ^[0-9]{1,5}$ ]] || [ "$((10#$port))" -gt 65535 ]; then
+  echo "web: --port: \`$port\` is no port; must be a whole number from 0 to 65535" >&2
+  exit 2
+fi
 
 tools/setup.sh web
 mkdir -p build
@@ -27,4 +31,4 @@ if ! { cmake --preset web && cmake --build --preset web; } >build/web.log 2>&1; 
 fi
 [ "$what" = serve ] || exit 0
 echo "The page, until Ctrl-C:"
-exec python3 web/app/serve.py build/web/page "$port"
+exec python3 web/app/serve.py build/web/page "$((10#$port))"
