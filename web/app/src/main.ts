@@ -4,7 +4,7 @@ import { Meter, showFigures, showLegend } from './figures';
 import { Hand } from './hand';
 import { connectKeep } from './keep';
 import { LivePlots } from './plots';
-import { edited } from './scene_text';
+import { edited, pointAt } from './scene_text';
 import { fromFragment } from './share';
 import { Simulator, SimulatorError, type SceneInfo, type ShippedScene } from './simulator';
 import { Sliders } from './sliders';
@@ -54,7 +54,7 @@ class Page {
     } catch (error) {
       message.hidden = false;
       message.textContent = (error as Error).message;
-      if (error instanceof SimulatorError) this.pointAt(error.message);
+      if (error instanceof SimulatorError) pointAt(error.message);
       return false;
     }
     message.hidden = true;
@@ -86,18 +86,6 @@ class Page {
     } catch (error) {
       this.say((error as Error).message, true);
     }
-  }
-
-  /** Puts the cursor where the message says. */
-  private pointAt(message: string) {
-    const place = /:(\d+):(\d+):/.exec(message);
-    if (!place) return;
-    const area = byId<HTMLTextAreaElement>('text');
-    const lines = area.value.split('\n'), line = Number(place[1]) - 1;
-    const start = lines.slice(0, line).reduce((sum, l) => sum + l.length + 1, 0) + Number(place[2]) - 1;
-    const end = lines.slice(0, line + 1).reduce((sum, l) => sum + l.length + 1, 0) - 1;
-    area.focus();
-    area.setSelectionRange(Math.min(start, area.value.length), Math.max(start, end));
   }
 
   private say(text: string, bad = false) {

@@ -1,4 +1,5 @@
 // Values of keys put into the text of a scene, whose comments and layout stay.
+import { byId } from '../../shared/format';
 import type { Simulator } from './simulator';
 
 const value = '(?:\\[[^\\]]*\\]|[^#\\s][^#\\n]*?)';   // a list in brackets, or up to a comment
@@ -31,4 +32,16 @@ export function edited(simulator: Simulator, text: string, name: string, overrid
     // The reader's own, then.
   }
   return simulator.resolve(text, name, overrides);
+}
+
+/** Puts the cursor where the message says. */
+export function pointAt(message: string) {
+  const place = /:(\d+):(\d+):/.exec(message);
+  if (!place) return;
+  const area = byId<HTMLTextAreaElement>('text');
+  const lines = area.value.split('\n'), line = Number(place[1]) - 1;
+  const start = lines.slice(0, line).reduce((sum, l) => sum + l.length + 1, 0) + Number(place[2]) - 1;
+  const end = lines.slice(0, line + 1).reduce((sum, l) => sum + l.length + 1, 0) - 1;
+  area.focus();
+  area.setSelectionRange(Math.min(start, area.value.length), Math.max(start, end));
 }
