@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
-import { gzipSync } from 'node:zlib';
+import { deflateRawSync, gzipSync } from 'node:zlib';
 import { root } from './node_simulator.mjs';
 
 const { chromium } = createRequire(path.resolve(process.argv[2], 'x.js'))('playwright-core');
@@ -170,8 +170,31 @@ async function shareLink(page, context) {
   await other.screenshot({ path: path.join(shots, 'shared.png') });
   await other.close();
   const broken = await open(context, `${link.split('#')[0]}#s=AAAA`);
-  check((await broken.textContent('#status')).length > 0 && (await nodes(broken)).length > 0, 'a broken link is said to be one');
+  check((await broken.textContent('#message')).length > 0 && (await nodes(broken)).length > 0, 'a broken link is said to be one');
   await broken.close();
+}
+
+const fragment = (shared) => `#s=${deflateRawSync(JSON.stringify(shared)).toString('base64url')}`;
+
+/** Links made by others: a colour that is not known, one that unpacks to far more than it is. */
+async function strangeLinks(page, context) {
+  const text = await page.inputValue('#text'), start = address.split('#')[0];
+  const odd = await open(context, start + fragment({ name: 'odd', text, colour: 'x"]', rulings: true }));
+  check((await odd.evaluate(() => window.wunderlich.scene())).name === 'odd', 'a link with an unknown colour opens');
+  check(await odd.locator('input[value=none]').isChecked(), 'as paper');
+  await odd.close();
+  const long = await open(context, start + fragment({ name: 'long', text: ' '.repeat(2e6) }));
+  const said = await long.textContent('#message');
+  check(/longer than a link/.test(said) && (await nodes(long)).length > 0, `one that unpacks to two megabytes is refused: ${said}`);
+  await long.close();
+  const hash = fragment({ name: 'bad', text: text.replace('segments:', 'segmens:') });
+  const unread = await open(context, start + hash);
+  check(/segmens/.test(await unread.textContent('#message')) && /segmens/.test(await unread.inputValue('#text')) &&
+    (await nodes(unread)).length > 0 && unread.url().endsWith(hash), 'a scene in a link that cannot be read is kept, with the message');
+  await unread.evaluate((to) => { location.hash = to; }, fragment({ name: 'next', text }));
+  await unread.waitForFunction(() => window.wunderlich.scene().name === 'next', undefined, { timeout: 20000 });
+  check(await unread.locator('#message').isHidden(), 'another link in the same page opens');
+  await unread.close();
 }
 
 async function download(page, button) {
@@ -186,6 +209,21 @@ async function downloads(page) {
   check(/pattern/.test(svgName) && svg.toString().includes('<svg'), `${svgName}, ${svg.length} bytes`);
   const [sceneName, scene] = await download(page, '#save-scene');
   check(sceneName === 'cantilever.yaml' && /^# .*\n(.*\n)*  bending_stiffness: 2\.0\d* +# N m$/m.test(scene.toString()), `${sceneName} with the stiffness of the slider`);
+}
+
+/** What the sliders say, in the scene file: of several ribbons, and of one given by its modulus. */
+async function slidersKept(page) {
+  for (const [scene, slider, factor, key, is, count] of [
+    ['paper-chain', 'length', 1.1, 'length', 0.33, 3], ['twist-and-shorten', 'stiffness', 2, 'young_modulus', 2e9, 1],
+  ]) {
+    await choose(page, scene);
+    const given = (await page.evaluate(() => window.wunderlich.settings()))[slider];
+    await setRange(page, `#set-${slider}`, slider === 'length' ? factor * given : Math.log(factor * given));
+    const [name, bytes] = await download(page, '#save-scene');
+    const found = [...bytes.toString().matchAll(new RegExp(`\\b${key}"?: ([^\\s,}]+)`, 'g'))].map((m) => Number(m[1]));
+    check(name === `${scene}.yaml` && found.length === count && found.every((value) => Math.abs(value / is - 1) < 0.02),
+      `${scene} is saved with what its slider says: ${key} ${found.join(', ')}`);
+  }
 }
 
 async function badScene(page) {
@@ -279,7 +317,7 @@ try {
   const share = await drawn(page, png);
   check(share > 0.02, `the ribbon covers ${(100 * share).toFixed(1)} % of its picture`);
   await page.screenshot({ path: path.join(shots, 'desktop.png'), fullPage: true });
-  const parts = { mouse, keyboard, sliders, shareLink, downloads, badScene, badFrame, times };
+  const parts = { mouse, keyboard, sliders, shareLink, strangeLinks, downloads, slidersKept, badScene, badFrame, times };
   const wanted = process.env.ONLY?.split(',') ?? Object.keys(parts);
   for (const name of wanted) {
     if (!parts[name]) continue;

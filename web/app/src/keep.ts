@@ -3,8 +3,8 @@ import { byId, element } from '../../shared/format';
 import { toFragment, type Shared } from './share';
 import type { Simulator } from './simulator';
 
-/** `current`: the scene as it is now. */
-export function connectKeep(simulator: Simulator, current: () => Shared) {
+/** `current`: the scene as it is now; it throws if what the sliders say cannot be written. */
+export function connectKeep(simulator: Simulator, name: () => string, current: () => Shared) {
   const kept = (text: string) => { byId('kept').textContent = text; };
   const keep = (id: string, work: () => void | Promise<void>) => byId(id).addEventListener('click', async () => {
     try {
@@ -14,11 +14,11 @@ export function connectKeep(simulator: Simulator, current: () => Shared) {
     }
   });
   const save = (bytes: BlobPart, type: string, ending: string) => {
-    const name = `${current().name.replace(/\.ya?ml$/, '')}${ending}`;
-    const link = element('a', { href: URL.createObjectURL(new Blob([bytes], { type })), download: name }) as HTMLAnchorElement;
+    const file = `${name().replace(/\.ya?ml$/, '')}${ending}`;
+    const link = element('a', { href: URL.createObjectURL(new Blob([bytes], { type })), download: file }) as HTMLAnchorElement;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-    kept(`Saved ${name}.`);
+    kept(`Saved ${file}.`);
   };
   keep('save-glb', () => save(simulator.glb(), 'model/gltf-binary', '.glb'));
   keep('save-pattern', () => save(simulator.pattern(), 'image/svg+xml', '-pattern.svg'));

@@ -5,7 +5,7 @@ import { Hand } from './hand';
 import { connectKeep } from './keep';
 import { LivePlots } from './plots';
 import { edited, pointAt } from './scene_text';
-import { fromFragment } from './share';
+import { fromFragment, type Shared } from './share';
 import { Simulator, SimulatorError, type SceneInfo, type ShippedScene } from './simulator';
 import { Sliders } from './sliders';
 import { Stage, type Colour } from './stage';
@@ -82,7 +82,7 @@ class Page {
   /** The scene with other values of some keys. */
   private edit(overrides: string[]) {
     try {
-      this.load(edited(this.simulator, this.text, this.name, [...this.sliders.overrides(this.text), ...overrides]), this.name);
+      this.load(edited(this.simulator, this.text, this.name, [...this.sliders.overrides(this.info), ...overrides]), this.name);
     } catch (error) {
       this.say((error as Error).message, true);
     }
@@ -218,7 +218,7 @@ class Page {
     this.connectScenes();
     this.connectTools();
     this.connectKeys();
-    connectKeep(this.simulator, () => ({
+    connectKeep(this.simulator, () => this.name, () => ({
       name: this.name, text: this.current(), colour: this.colour,
       rulings: byId('rulings').getAttribute('aria-pressed') === 'true',
     }));
@@ -228,6 +228,7 @@ class Page {
     byId('as-given').addEventListener('click', () => this.sliders.asGiven());
     const run = () => { this.load(byId<HTMLTextAreaElement>('text').value, this.name); };
     byId('run').addEventListener('click', run);
+    addEventListener('hashchange', () => void this.open());
     byId('text').addEventListener('keydown', (event) => {
       if (event.key === 'Enter' && (event.ctrlKey || event.metaKey)) run();
     });
@@ -275,9 +276,9 @@ class Page {
     apply();
   }
   private setColour(colour: Colour) {
-    this.colour = colour;
     document.querySelector<HTMLInputElement>(`input[name=colour][value=${colour}]`)!.checked = true;
     this.stage.setColour(colour, this.simulator.view());
+    this.colour = colour;
     showLegend(this.colour, this.stage.range);
   }
   private setRulings(on: boolean) {
@@ -312,28 +313,33 @@ class Page {
 
   /** The scene as it is now: its text with what the sliders say. */
   private current(): string {
-    return edited(this.simulator, this.text, this.name, this.sliders.overrides(this.text));
+    return edited(this.simulator, this.text, this.name, this.sliders.overrides(this.info));
   }
 
-  /** The scene that the address holds, else the first. */
+  /** The scene that the address holds, else the first; what is wrong with a link stands where the text is. */
   async open() {
-    try {
-      const shared = await fromFragment(location.hash);
-      if (shared) {
-        byId<HTMLTextAreaElement>('text').value = shared.text;
-        const select = byId<HTMLSelectElement>('scene');
-        select.value = shared.name;
-        if (!this.load(shared.text, shared.name)) throw new Error('the scene in the link cannot be read; see below');
-        if (shared.colour) this.setColour(shared.colour as Colour);
-        this.setRulings(shared.rulings === true);
-        return;
-      }
-    } catch (error) {
-      this.choose(first);
-      this.say(`The link holds no scene: ${(error as Error).message}`, true);
-      return;
+    const link = location.hash;
+    let wrong = '';
+    const shared = await fromFragment(link).catch((error: Error) => {
+      wrong = `The link holds no scene: ${error.message}`;
+      return null;
+    });
+    if (shared && this.openShared(shared)) return;
+    if (!this.info) this.choose(first);
+    if (shared) {   // its text is kept, to be mended
+      history.replaceState(null, '', link);
+      byId<HTMLTextAreaElement>('text').value = shared.text;
+      this.load(shared.text, shared.name);
+    } else if (wrong) {
+      Object.assign(byId('message'), { hidden: false, textContent: wrong });
     }
-    this.choose(first);
+  }
+  private openShared(shared: Shared): boolean {
+    if (!this.load(shared.text, shared.name)) return false;
+    byId<HTMLSelectElement>('scene').value = shared.name;
+    if (shared.colour) this.setColour(shared.colour);
+    this.setRulings(shared.rulings === true);
+    return true;
   }
 
   /** Milliseconds a frame of 1/60 s while the far end is pulled to and fro: of the simulation, and until it is drawn. */

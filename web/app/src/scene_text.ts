@@ -4,9 +4,10 @@ import type { Simulator } from './simulator';
 
 const value = '(?:\\[[^\\]]*\\]|[^#\\s][^#\\n]*?)';   // a list in brackets, or up to a comment
 
-/** `section.key=value` or `key=value`, one after the other. */
+/** `section.key=value` or `key=value`, one after the other; deeper ones are left to the reader. */
 function put(text: string, override: string): string {
-  const [path, to] = override.split(/=(.*)/s), [section, key] = path.split('.');
+  const [path, to] = override.split(/=(.*)/s), [section, key, deeper] = path.split('.');
+  if (deeper) return text;
   if (!key) {
     const line = new RegExp(`^(${section}:[ \\t]*)${value}([ \\t]*(?:#.*)?)$`, 'm');
     return line.test(text) ? text.replace(line, (_, before, after) => `${before}${to}${after}`) : `${text.trimEnd()}\n\n${section}: ${to}\n`;

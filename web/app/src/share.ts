@@ -1,10 +1,18 @@
 // A scene as a link: its text, compressed into the part of the address that no server sees.
+import { colours, type Colour } from './stage';
 
-export interface Shared { name: string; text: string; colour?: string; rulings?: boolean }
+const longest = 1e6;   // bytes of what a link unpacks to
+
+export interface Shared { name: string; text: string; colour?: Colour; rulings?: boolean }
 
 async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
-  const out = new Blob([bytes]).stream().pipeThrough(stream);
-  return new Uint8Array(await new Response(out).arrayBuffer());
+  const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader(), parts: Uint8Array<ArrayBuffer>[] = [];
+  for (let size = 0, next = await reader.read(); !next.done; next = await reader.read()) {
+    size += next.value.length;
+    if (size > longest) throw new Error('it is longer than a link may be');
+    parts.push(next.value as Uint8Array<ArrayBuffer>);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 
 export async function toFragment(shared: Shared): Promise<string> {
@@ -23,5 +31,6 @@ export async function fromFragment(fragment: string): Promise<Shared | null> {
   const bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
   const shared = JSON.parse(new TextDecoder().decode(await through(bytes, new DecompressionStream('deflate-raw'))));
   if (typeof shared?.text !== 'string' || typeof shared?.name !== 'string') throw new Error('the link holds no scene');
-  return shared;
+  const colour = colours.find((known) => known === shared.colour);   // one that is not known is left out
+  return { name: shared.name, text: shared.text, colour, rulings: shared.rulings === true };
 }

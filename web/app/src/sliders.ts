@@ -106,31 +106,47 @@ export class Sliders {
     this.changed(this.now);
   }
 
-  /** Keys of the scene that give what the sliders say. */
-  overrides(text: string): string[] {
+  /** Keys of the scene that give what the sliders say; throws where they cannot be written. */
+  overrides(info: SceneInfo): string[] {
     const { given, now } = this;
     const out: string[] = [];
-    const has = (key: string) => new RegExp(`^\\s+${key}\\s*:`, 'm').test(text);
     const written = (value: number) => String(Number(value.toPrecision(7)));
-    if (now.length !== given.length) out.push(`ribbon.length=${written(now.length)}`);
-    if (has('aspect') && (now.width !== given.width || now.length !== given.length)) {
-      out.push(`ribbon.aspect=${written(now.length / now.width)}`);
-    } else if (now.width !== given.width) {
-      out.push(`ribbon.width=${written(now.width)}`);
-    }
-    if (now.stiffness !== given.stiffness) {
-      const elastic = has('young_modulus');
-      out.push(elastic ? `ribbon.young_modulus=${youngModulus(text, now.stiffness)}` : `ribbon.bending_stiffness=${written(now.stiffness)}`);
+    const length = now.length / given.length, width = now.width / given.width, stiffness = now.stiffness / given.stiffness;
+    for (const [i, { path, has, value }] of ribbonsOf(info.resolved).entries()) {
+      const strip = info.strips[i];
+      if (length !== 1) out.push(`${path}.length=${written(strip.length * length)}`);
+      if (has('aspect') && width !== length) out.push(`${path}.aspect=${written((strip.length * length) / (strip.width * width))}`);
+      if (!has('aspect') && width !== 1) out.push(`${path}.width=${written(strip.width * width)}`);
+      if (stiffness === 1) continue;
+      const key = has('young_modulus') ? 'young_modulus' : 'bending_stiffness';   // D is proportional to E
+      out.push(`${path}.${key}=${written(i === 0 && key === 'bending_stiffness' ? now.stiffness : value(key) * stiffness)}`);
     }
     if (String(now.gravity) !== String(given.gravity)) out.push(`gravity=[${now.gravity.map(written).join(', ')}]`);
     return out;
   }
 }
 
-/** E for a stiffness D = E h^3 / (12 (1 - nu^2)), with the thickness and nu of the scene. */
-function youngModulus(text: string, stiffness: number): string {
-  const value = (key: string, fallback: number) =>
-    Number(new RegExp(`^\\s+${key}\\s*:\\s*([-+.\\deE]+)`, 'm').exec(text)?.[1] ?? fallback);
-  const h = value('thickness', 1e-4), nu = value('poisson_ratio', 0.3);
-  return String(Number(((12 * (1 - nu * nu) * stiffness) / h ** 3).toPrecision(7)));
+/** The ribbons of a scene as the reader writes it: one line a section, keys in quotes, and where in it each stands. */
+function ribbonsOf(resolved: string) {
+  const one = /^"ribbon": (.*)$/m.exec(resolved), several = /^"ribbons": \[(.*)\]$/m.exec(resolved);
+  const texts = one ? [one[1]] : items(several?.[1] ?? '');
+  return texts.map((text, i) => ({
+    path: one ? 'ribbon' : `ribbons.${i}`,
+    has: (key: string) => text.includes(`"${key}": `),
+    value: (key: string) => {
+      const value = Number(new RegExp(`"${key}": ([^,}]*)`).exec(text)?.[1]);
+      if (!Number.isFinite(value)) throw new Error(`${key} is no plain number in the scene; change it in its text`);
+      return value;
+    },
+  }));
+}
+
+/** The maps of a list, which may hold others. */
+function items(list: string): string[] {
+  const out: string[] = [];
+  for (let at = 0, depth = 0, start = 0; at < list.length; ++at) {
+    if (list[at] === '{' && depth++ === 0) start = at;
+    if (list[at] === '}' && --depth === 0) out.push(list.slice(start, at + 1));
+  }
+  return out;
 }

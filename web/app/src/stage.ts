@@ -8,7 +8,8 @@ import {
 } from '../../shared/stage';
 import type { SceneInfo, Solid, View } from './simulator';
 
-export type Colour = 'none' | 'kappa' | 'tau' | 'eta' | 'energy';
+export const colours = ['none', 'kappa', 'tau', 'eta', 'energy'] as const;
+export type Colour = (typeof colours)[number];
 
 const tooFar = 1.5, tooNear = 0.6;   // of the radius that the view was made for: the view follows
 
