@@ -8,7 +8,7 @@
 #include <string>
 
 #include "geometry/chains.hpp"
-#include "wunderlich/base/error.hpp"
+#include "support/input_error.hpp"
 #include "wunderlich/geometry/surface.hpp"
 #include "wunderlich/io/run_output.hpp"
 
@@ -79,16 +79,6 @@ class Folder : public ::testing::Test {
   std::filesystem::path root;
 };
 
-/// The message of the InputError that `call` must throw.
-template <class Call>
-std::string input_error(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no InputError";
-  return "";
-}
+using wunderlich::testing::input_error;
 
 }  // namespace wunderlich::io::testing

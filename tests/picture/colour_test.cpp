@@ -1,12 +1,13 @@
 #include "wunderlich/picture/colour.hpp"
 
 #include "picture/sample.hpp"
-#include "wunderlich/base/error.hpp"
+#include "support/input_error.hpp"
 
 namespace wunderlich::picture {
 namespace {
 
 using testing::strip;
+using wunderlich::testing::input_error;
 
 TEST(Colour, ScreensAndLightAreInverse) {
   for (int k = 0; k <= 255; ++k) {
@@ -58,16 +59,6 @@ TEST(Field, ASpikeDoesNotSetTheRange) {
   frame.surface.fields[2].values[7] = 1e6;
   EXPECT_NEAR(range_of({&frame}, Colour::kappa), 0.5, 1e-12);
   EXPECT_EQ(range_of({&frame}, Colour::tau), 1) << "of a field that is zero";
-}
-
-template <class Call>
-std::string input_error(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Style, ReadsWhatIsRightAndRefusesTheRest) {

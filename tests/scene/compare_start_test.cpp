@@ -1,6 +1,8 @@
 // Where the models of a comparison start.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include <algorithm>
 #include <optional>
 
@@ -56,6 +58,13 @@ compare: {time_step: 0.02, shell_conforming: {along: 11, across: 3}}
   EXPECT_LT(shell.length_error, 1e-6);
 }
 
+std::pair<ModelResult, ModelResult> ribbon_and_shell(const Scene& scene) {
+  const Observer go_on = [](const RunStatus&) { return true; };
+  ModelResult shell = run_model(scene, Model::shell_conforming, go_on);
+  EXPECT_TRUE(shell.converged) << shell.failure;
+  return {run_model(scene, Model::ribbon, go_on), std::move(shell)};
+}
+
 // The end of the flat strip is led to where its clamp is; where it jumped there, the shell came to rest with 9 % more
 // energy than the ribbon.
 TEST(CompareStart, AShellIsBroughtToAClampNearerThanItsLength) {
@@ -65,10 +74,7 @@ clamps: [{at: start}, {at: end, position: [0.6, 0, 0]}]
 solver: {method: equilibrium}
 compare: {shell_conforming: {along: 21, across: 3}}
 )");
-  const Observer go_on = [](const RunStatus&) { return true; };
-  const ModelResult ribbon = run_model(scene, Model::ribbon, go_on);
-  const ModelResult shell = run_model(scene, Model::shell_conforming, go_on);
-  EXPECT_TRUE(shell.converged) << shell.failure;
+  const auto [ribbon, shell] = ribbon_and_shell(scene);
   EXPECT_NEAR(shell.energy.elastic / ribbon.energy.elastic, 1, 0.03);
   ASSERT_TRUE(shell.imbalance && ribbon.imbalance);
   EXPECT_LE(*shell.imbalance, 1e-6);
@@ -84,10 +90,7 @@ forces: [{at: end, keyframes: [{time: 0, force: [0, 0, 0]}, {time: 1, force: [0,
 solver: {method: equilibrium, duration: 1}
 compare: {shell_conforming: {along: 21, across: 3}}
 )");
-  const Observer go_on = [](const RunStatus&) { return true; };
-  const ModelResult ribbon = run_model(scene, Model::ribbon, go_on);
-  const ModelResult shell = run_model(scene, Model::shell_conforming, go_on);
-  EXPECT_TRUE(shell.converged) << shell.failure;
+  const auto [ribbon, shell] = ribbon_and_shell(scene);
   EXPECT_NEAR(shell.energy.elastic / ribbon.energy.elastic, 1, 0.08);
 }
 
