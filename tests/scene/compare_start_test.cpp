@@ -1,10 +1,9 @@
 // Where the models of a comparison start.
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "wunderlich/scene/compare.hpp"
 #include "wunderlich/scene/read.hpp"
