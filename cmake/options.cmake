@@ -9,7 +9,12 @@ target_compile_definitions(wunderlich_options INTERFACE $<$<CONFIG:Release>:EIGE
 
 # The two flags let the compiler keep sqrt and log inline; results do not change. Never -ffast-math.
 target_compile_options(wunderlich_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno -fno-trapping-math)
+  -Wall -Wextra -Wpedantic -fno-math-errno -fno-trapping-math)
+if(NOT CMAKE_UNITY_BUILD)
+  target_compile_options(wunderlich_options INTERFACE -Wshadow)
+else()  # where several files are compiled as one, a local variable may be named like a constant of another file
+  target_compile_options(wunderlich_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local>)
+endif()
 if(WUNDERLICH_NATIVE)
   # Vectors of eight are of no use here. Eigen's own vector code stays out: at AVX's width g++ 12 takes parts of it for
   # uninitialised or out of bounds, and what runs often is in math/four.hpp.

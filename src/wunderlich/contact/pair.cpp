@@ -10,7 +10,7 @@ namespace {
 
 /// Sine squared of the angle between two directions below which they span no plane: rounding would choose the nearest
 /// point.
-constexpr double kFlat = 1e-14;
+constexpr double kParallel = 1e-14;
 
 /// Nearest points with the parameters that are free to move them: none between two corners, one along an edge, two in
 /// a triangle or along two edges.
@@ -59,7 +59,7 @@ Place at_edge(const PairPoints& x, int p, int a, int b, double sign) {
 bool solve_both(const Vec3& e, const Vec3& a, const Vec3& b, double& s, double& t) {
   const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
   const double det = a.cross(b).squaredNorm();
-  if (!(det > kFlat * aa * bb)) return false;
+  if (!(det > kParallel * aa * bb)) return false;
   const double ea = e.dot(a), eb = e.dot(b);
   s = (ab * eb - bb * ea) / det;
   t = (ab * ea - aa * eb) / det;

@@ -83,19 +83,9 @@ Json model_json(const ModelResult& model) {
   return out;
 }
 
-/// Every k-th frame, the first and the last always.
-std::vector<const Frame*> chosen(const std::vector<Frame>& frames) {
-  const std::size_t each = std::max<std::size_t>(1, frames.front().surface.points.size());
-  const std::size_t count = std::min(std::max<std::size_t>(2, point_budget / each), frames.size());
-  std::vector<const Frame*> out;
-  for (std::size_t k = 0; k < count; ++k) {
-    out.push_back(&frames[count == 1 ? 0 : k * (frames.size() - 1) / (count - 1)]);
-  }
-  return out;
-}
-
 Json shapes_json(const ModelResult& model, const std::vector<Body>& bodies) {
-  const std::vector<const Frame*> frames = chosen(model.frames);
+  const std::size_t each = std::max<std::size_t>(1, model.frames.front().surface.points.size());
+  const std::vector<const Frame*> frames = chosen_frames(model.frames, point_budget / each);
   Cube cube;
   for (const Frame* frame : frames) {
     for (const Vec3& p : frame->surface.points) cube.include(p);

@@ -10,6 +10,15 @@
 
 namespace wunderlich::io {
 
+std::vector<const Frame*> chosen_frames(const std::vector<Frame>& frames, std::size_t most) {
+  const std::size_t count = std::min(std::max<std::size_t>(2, most), frames.size());
+  std::vector<const Frame*> out;
+  for (std::size_t k = 0; k < count; ++k) {
+    out.push_back(&frames[count == 1 ? 0 : k * (frames.size() - 1) / (count - 1)]);
+  }
+  return out;
+}
+
 std::string packed_points(const std::vector<Vec3>& points, const Cube& cube) {
   std::string out;
   for (const Vec3& p : points) {

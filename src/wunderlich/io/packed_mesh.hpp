@@ -22,6 +22,9 @@ struct Cube {
   }
 };
 
+/// At most so many frames, evenly chosen, the first and the last always: at least two of several.
+std::vector<const Frame*> chosen_frames(const std::vector<Frame>& frames, std::size_t most);
+
 /// Base64 of x, y, z as 16-bit shares of the cube.
 std::string packed_points(const std::vector<Vec3>& points, const Cube& cube);
 

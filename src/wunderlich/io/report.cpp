@@ -104,20 +104,10 @@ Json history_json(const std::vector<HistoryRow>& history) {
   return out;
 }
 
-/// Every k-th frame, the first and the last always, so that the points stay within the budget.
-std::vector<const Frame*> chosen(const std::vector<Frame>& frames) {
-  const std::size_t bytes = 10 * frames.front().surface.points.size() + 24 * frames.front().centerline.size();
-  const std::size_t most = std::max<std::size_t>(2, byte_budget / std::max<std::size_t>(1, bytes));
-  std::vector<const Frame*> out;
-  const std::size_t count = std::min(most, frames.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    out.push_back(&frames[count == 1 ? 0 : k * (frames.size() - 1) / (count - 1)]);
-  }
-  return out;
-}
-
 Json report_json(const RunOutput& output) {
-  const std::vector<const Frame*> frames = chosen(output.frames);
+  const Frame& first = output.frames.front();
+  const std::size_t bytes = 10 * first.surface.points.size() + 24 * first.centerline.size();  // of a frame
+  const std::vector<const Frame*> frames = chosen_frames(output.frames, byte_budget / std::max<std::size_t>(1, bytes));
   const std::vector<FlatPattern>& strips = output.patterns;
   const std::vector<double> begin = beginnings(strips);
   const Cube cube = bounding_cube(frames, strips);

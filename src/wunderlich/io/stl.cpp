@@ -7,13 +7,13 @@
 
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/io/bytes.hpp"
+#include "wunderlich/io/millimetres.hpp"
 
 namespace wunderlich::io {
 
 namespace {
 
-constexpr double mm = 1000;  // per metre
-constexpr std::size_t header_size = 80, triangle_size = 50;
+constexpr std::size_t comment_size = 80, triangle_size = 50;
 
 void append_triangle(std::string& out, const Vec3& a, const Vec3& b, const Vec3& c) {
   append_float3(out, (b - a).cross(c - a).normalized());
@@ -30,8 +30,8 @@ std::string stl(const std::vector<Solid>& solids, const std::string& name) {
     throw InputError(fmt::format("{} triangles are more than STL can hold; lower output.subdivision", count));
   }
   std::string out = "binary, mm, z up: " + name;  // must not begin with "solid": that would mean text
-  out.resize(header_size, ' ');
-  out.reserve(header_size + 4 + triangle_size * count);
+  out.resize(comment_size, ' ');
+  out.reserve(comment_size + 4 + triangle_size * count);
   append(out, static_cast<std::uint32_t>(count));
   for (const Solid& solid : solids) {
     const auto at = [&](int i) -> const Vec3& { return solid.points[static_cast<std::size_t>(i)]; };

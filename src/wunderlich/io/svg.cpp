@@ -8,13 +8,12 @@
 #include <numbers>
 #include <vector>
 
+#include "wunderlich/io/millimetres.hpp"
 #include "wunderlich/io/xml.hpp"
 
 namespace wunderlich::io {
 
 namespace {
-
-constexpr double mm = 1000;  // per metre
 
 struct Box {
   double left = 0, right = 0, top = 0, bottom = 0;

@@ -5,14 +5,13 @@
 #include <iterator>
 
 #include "wunderlich/base/version.hpp"
+#include "wunderlich/io/millimetres.hpp"
 #include "wunderlich/io/xml.hpp"
 #include "wunderlich/io/zip.hpp"
 
 namespace wunderlich::io {
 
 namespace {
-
-constexpr double mm = 1000;  // per metre
 
 const char* const declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 

@@ -7,8 +7,6 @@ namespace wunderlich::math {
 
 namespace {
 
-Vec3 vec(const Four& v) { return first_three(v); }
-
 /// Where a point's seven unknowns are, and how it moves with them.
 struct Lever {
   int at[7];
@@ -23,7 +21,7 @@ class Assembly {
     double rigidity = 0, length = 0;
     for (const ChainLink& link : system.links) {
       rigidity += std::abs(link.hess_bb(0, 0));
-      length += vec(link.span).squaredNorm();
+      length += first_three(link.span).squaredNorm();
     }
     const auto count = static_cast<double>(system.links.size());
     length = std::sqrt(length / count);
@@ -107,15 +105,15 @@ class Assembly {
     const ChainLink& link = system_.links[k];
     const NodePlaces& at = places(i);
     const NodeWrench& wrench = chain_.wrench[k];
-    const Vec3 b0 = vec(link.axis[0]), b1 = vec(link.axis[1]);
+    const Vec3 b0 = first_three(link.axis[0]), b1 = first_three(link.axis[1]);
     const int before = i > 0 ? places(i - 1).theta : chain_.theta_base;
     Mat2 own = Mat2::Zero();
     Eigen::Matrix<double, 3, 2> turned = Eigen::Matrix<double, 3, 2>::Zero();
     if (i > 0) own += system_.links[k - 1].hess_bb;
     if (k + 1 < system_.links.size()) own += link.hess_aa;
     if (system_.geometric) {
-      own(0, 1) += wrench.torque.dot(vec(link.axis_01));
-      own(1, 1) += wrench.torque.dot(vec(link.axis_11));
+      own(0, 1) += wrench.torque.dot(first_three(link.axis_01));
+      own(1, 1) += wrench.torque.dot(first_three(link.axis_11));
       turned << 0.5 * b0.cross(wrench.torque), 0.5 * b1.cross(wrench.torque);
     }
     own(0, 1) -= link.chart * (wrench.gradient[1] - (system_.geometric ? 0 : wrench.pull));
@@ -140,18 +138,18 @@ class Assembly {
     const NodePlaces& at = places(i);
     add_joint(i);
     add_block(at.v, at.v, Mat3(link.stiffness * Mat3::Identity()));
-    load(at.v, vec(link.force));
+    load(at.v, first_three(link.force));
     Mat3 turn = Mat3::Zero();
     if (k < system_.turns.size()) {
       const TurnTerm& term = system_.turns[k];
       for (int r = 0; r < 3; ++r) {
-        turn.row(r) = vec(term.hessian[r]).transpose();
-        if (system_.geometric) turn.row(r) += vec(term.geometric[r]).transpose();
+        turn.row(r) = first_three(term.hessian[r]).transpose();
+        if (system_.geometric) turn.row(r) += first_three(term.geometric[r]).transpose();
       }
       load(at.theta, Vec3(term.hessian[0][3], term.hessian[1][3], term.hessian[2][3]));
     }
     if (k + 1 < system_.links.size()) {
-      const Vec3 span = vec(link.span), force = chain_.wrench[k + 1].force;
+      const Vec3 span = first_three(link.span), force = chain_.wrench[k + 1].force;
       if (system_.geometric) {
         turn += 0.5 * (span * force.transpose() + force * span.transpose()) - span.dot(force) * Mat3::Identity();
       }

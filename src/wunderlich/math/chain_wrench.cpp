@@ -2,19 +2,13 @@
 
 namespace wunderlich::math {
 
-namespace {
-
-Vec3 vec(const Four& v) { return first_three(v); }
-
-}  // namespace
-
 void find_wrenches(const ChainSystem& system, std::vector<NodeWrench>& w, Vec6& base_gradient) {
   const std::size_t count = system.links.size();
   w.assign(count, {Vec3::Zero(), Vec3::Zero(), Vec2::Zero(), 0});  // first each node's own, then with all beyond
   base_gradient.setZero();
   for (std::size_t i = 0; i < count; ++i) {
     const ChainLink& link = system.links[i];
-    w[i].force += vec(link.force);
+    w[i].force += first_three(link.force);
     if (i + 1 < count) w[i].gradient += link.grad_a, w[i + 1].gradient += link.grad_b;
     if (i < system.turns.size()) {
       const TurnTerm& turn = system.turns[i];
@@ -48,10 +42,10 @@ void find_wrenches(const ChainSystem& system, std::vector<NodeWrench>& w, Vec6& 
     w[static_cast<std::size_t>(point.node)].pull += point.slant.dot(point.gradient);
   }
   for (std::size_t i = count; i-- > 0;) {
-    const Vec3 b0 = vec(system.links[i].axis[0]), b1 = vec(system.links[i].axis[1]);
+    const Vec3 b0 = first_three(system.links[i].axis[0]), b1 = first_three(system.links[i].axis[1]);
     if (i + 1 < count) {
       w[i].force += w[i + 1].force;
-      w[i].torque += w[i + 1].torque + vec(system.links[i].span).cross(w[i + 1].force);
+      w[i].torque += w[i + 1].torque + first_three(system.links[i].span).cross(w[i + 1].force);
     }
     w[i].pull += b1.dot(w[i].torque);
     w[i].gradient += Vec2(b0.dot(w[i].torque), w[i].pull);

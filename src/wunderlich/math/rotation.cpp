@@ -1,12 +1,13 @@
 #include "wunderlich/math/rotation.hpp"
 
 #include <array>
+#include <numbers>
 
 namespace wunderlich::math {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// c(s) = (1 - x cot x)/s with x = sqrt(s)/2, and dc/ds.
 struct CotangentFactor {
@@ -26,7 +27,7 @@ CotangentFactor cotangent_factor(double s) {
     rest_first = rest_first * s + rest;
     rest = rest * s + kRest[k];
   }
-  const double near = 1 / (4 * kPi * kPi - s), far = 1 / (16 * kPi * kPi - s);
+  const double near = 1 / (4 * pi * pi - s), far = 1 / (16 * pi * pi - s);
   return {2 * (near + far) + rest, 2 * (near * near + far * far) + rest_first};
 }
 

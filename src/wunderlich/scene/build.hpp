@@ -35,6 +35,9 @@ OutputOptions build_output(const Cell& root, const geometry::RibbonSpec& ribbon)
 
 Vec3 vector(const Cell& cell);
 
+/// What an optional number is, or what it is without being given.
+double number_or(const Cell& cell, double fallback);
+
 /// What the chosen word means.
 template <typename T>
 T chosen(const Cell& cell, const std::map<std::string, T>& meanings) {

@@ -6,8 +6,6 @@ namespace wunderlich::scene {
 
 namespace {
 
-double number_or(const Cell& cell, double fallback) { return cell.value != nullptr ? number(cell) : fallback; }
-
 CompareOptions::Shell shell_of(const Cell& cell, double time_step) {
   return {static_cast<int>(integer(child(cell, "along"))), static_cast<int>(integer(child(cell, "across"))),
           number_or(child(cell, "time_step"), time_step)};

@@ -123,8 +123,6 @@ two_stage::Options two_stage_of(const Cell& cell, const energy::Model& model) {
   return options;
 }
 
-double number_or(const Cell& cell, double fallback) { return cell.value != nullptr ? number(cell) : fallback; }
-
 solver::implicit::Options implicit_of(const Cell& cell) {
   using solver::implicit::Integrator;
   using solver::implicit::KineticEnergy;

@@ -170,6 +170,8 @@ constraint::Load load_of(const Cell& cell, const Strip& strip) {
 
 }  // namespace
 
+double number_or(const Cell& cell, double fallback) { return cell.value != nullptr ? number(cell) : fallback; }
+
 Vec3 vector(const Cell& cell) {
   const std::vector<double> v = numbers(cell);
   return {v[0], v[1], v[2]};

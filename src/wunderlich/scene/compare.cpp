@@ -15,7 +15,6 @@ namespace wunderlich::scene {
 namespace {
 
 constexpr std::array<const char*, 4> names{"ribbon", "rod", "shell-conforming", "shell-nonconforming"};
-constexpr int kAcross = 8;  // parts of a ruling that are measured
 
 /// Scalars that the ribbon's method solves for, and the equations between them.
 void count_ribbon(const Scene& scene, ModelResult& result) {

@@ -10,7 +10,7 @@ namespace wunderlich::scene {
 
 namespace {
 
-constexpr int kMaxHalvings = 8;
+constexpr int kHalvings = 8;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ bool ModelLog::count_step(double time, double seconds, int iterations) {
 
 Tried ModelLog::in_halves(const Stepped& model, double t0, double t1, int halvings) {
   const Tried tried = model.step_to(t1);
-  if (tried.failure.empty() || halvings == kMaxHalvings) return tried;
+  if (tried.failure.empty() || halvings == kHalvings) return tried;
   const double middle = 0.5 * (t0 + t1);
   const Tried first = in_halves(model, t0, middle, halvings + 1);
   const int before = tried.iterations + first.iterations;

@@ -10,6 +10,9 @@
 
 namespace wunderlich::scene {
 
+/// Parts of a ruling at which isometry is measured.
+inline constexpr int kAcross = 8;
+
 /// What came of a step that a model tried.
 struct Tried {
   int iterations = 0;

@@ -18,7 +18,7 @@ namespace rod = baseline::rod;
 
 namespace {
 
-constexpr int kLoadSteps = 20, kRestingSteps = 20, kAcross = 8;
+constexpr int kLoadSteps = 20, kStepsAtRest = 20;
 
 rod::Rod rod_of(const Scene& scene) {
   const geometry::RibbonSpec& spec = scene.ribbon;
@@ -65,8 +65,8 @@ double last_event(const constraint::Surroundings& surroundings) {
 }
 
 /// One run under way.
-struct Run {
-  Run(const Scene& s, const Observer& observer)
+struct RodRun {
+  RodRun(const Scene& s, const Observer& observer)
       : scene(with_segments(s, s.compare.rod_segments)),
         rod(rod_of(scene)),
         log(s, Model::rod, s.solver.duration, 1, observer),
@@ -121,7 +121,7 @@ struct Run {
 
   bool is_over() {
     resting = !path && is_slow() ? resting + 1 : 0;
-    return scene.solver.stop_at_rest && resting >= kRestingSteps;
+    return scene.solver.stop_at_rest && resting >= kStepsAtRest;
   }
 
   Mesh surface() const { return rod::surface_mesh(rod, state, scene.output.across); }
@@ -150,7 +150,7 @@ struct Run {
 }  // namespace
 
 ModelResult run_rod(const Scene& scene, const Observer& observer) {
-  Run run(scene, observer);
+  RodRun run(scene, observer);
   ModelResult& result = run.log.result();
   result.method = run.path ? "equilibrium" : "implicit-euler";
   result.resolution = fmt::format("{} edges", run.rod.segments);

@@ -74,8 +74,8 @@ Vec3 on_ribbon(const geometry::Ribbon& ribbon, const geometry::State& state, con
 }
 
 /// One run under way. A path of loads is gone through in time, slowly and damped, and then waited for.
-struct Run {
-  Run(const Scene& s, Model model, const Observer& observer)
+struct ShellRun {
+  ShellRun(const Scene& s, Model model, const Observer& observer)
       : scene(s),
         path(s.solver.method == Method::equilibrium),
         factor(path ? s.compare.load_time : 1),
@@ -210,7 +210,7 @@ std::string overlap(const shell::Shell& shell, const Scene& scene, Model model) 
                      conforms(model) ? "shell_conforming" : "shell_nonconforming");
 }
 
-void add_notes(const Run& run, std::vector<std::string>& notes) {
+void add_notes(const ShellRun& run, std::vector<std::string>& notes) {
   const Scene& scene = run.scene;
   if (const double shift = shell::largest_shift(run.shell, scene.surroundings); shift > 1e-9 * scene.ribbon.length)
     notes.push_back(fmt::format("pins or loads stand up to {:.2g} m from their places on the strip", shift));
@@ -225,7 +225,7 @@ void add_notes(const Run& run, std::vector<std::string>& notes) {
 }  // namespace
 
 ModelResult run_shell(const Scene& scene, Model model, const Observer& observer) {
-  Run run(scene, model, observer);
+  ShellRun run(scene, model, observer);
   ModelResult& result = run.log.result();
   const CompareOptions::Shell& size = conforms(model) ? scene.compare.conforming : scene.compare.nonconforming;
   result.method = "implicit-euler";

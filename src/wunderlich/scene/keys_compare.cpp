@@ -4,7 +4,7 @@ namespace wunderlich::scene {
 
 namespace {
 
-const std::vector<Key> table = {
+const std::vector<Key> compare_table = {
     {"compare",
      Type::map,
      "",
@@ -114,6 +114,6 @@ const std::vector<Key> table = {
 
 }  // namespace
 
-const std::vector<Key>& compare_keys() { return table; }
+const std::vector<Key>& compare_keys() { return compare_table; }
 
 }  // namespace wunderlich::scene

@@ -1,15 +1,11 @@
+#include "wunderlich/scene/key_bounds.hpp"
 #include "wunderlich/scene/schema.hpp"
 
 namespace wunderlich::scene {
 
 namespace {
 
-constexpr double far = 1e9;         // m
-constexpr double short_ = 1e-6;     // m
-constexpr double long_time = 1e9;   // s
-constexpr double many_turns = 1e4;  // rad
-
-const std::vector<Key> table = {
+const std::vector<Key> obstacle_table = {
     {"obstacles", Type::list, "", 0, 1000, "", {}, "Solids that the strip cannot enter, at rest or moving."},
     {"obstacles.*.shape",
      Type::choice,
@@ -20,20 +16,27 @@ const std::vector<Key> table = {
      {"plane", "sphere", "cylinder", "capsule", "box", "mesh"},
      "`plane`: all that is below it. `cylinder`: with flat ends. `capsule`: with round ends. `mesh`: inside a closed "
      "surface of triangles. Required."},
-    {"obstacles.*.radius", Type::number, "m", short_, far, "", {}, "Of a sphere, cylinder or capsule. Required there."},
+    {"obstacles.*.radius",
+     Type::number,
+     "m",
+     bound::tiny,
+     bound::far,
+     "",
+     {},
+     "Of a sphere, cylinder or capsule. Required there."},
     {"obstacles.*.length",
      Type::number,
      "m",
-     short_,
-     far,
+     bound::tiny,
+     bound::far,
      "",
      {},
      "Of a cylinder, endless without it; of a capsule without its round ends, required there."},
     {"obstacles.*.size",
      Type::vector,
      "m",
-     short_,
-     far,
+     bound::tiny,
+     bound::far,
      "",
      {},
      "Edges of a box along `side`, square to it, and along "
@@ -48,20 +51,27 @@ const std::vector<Key> table = {
      "Of a mesh: an OBJ file, found from the folder of the scene file on. It is read once: runs keep its text as "
      "`obj`."},
     {"obstacles.*.obj", Type::lines, "", 0, 0, "", {}, "Of a mesh, instead of `file`: the text of an OBJ file."},
-    {"obstacles.*.scale", Type::number, "", short_, far, "1", {}, "Of a mesh: metres that its unit of length is."},
+    {"obstacles.*.scale",
+     Type::number,
+     "",
+     bound::tiny,
+     bound::far,
+     "1",
+     {},
+     "Of a mesh: metres that its unit of length is."},
     {"obstacles.*.position",
      Type::vector,
      "m",
-     -far,
-     far,
+     -bound::far,
+     bound::far,
      "[0, 0, 0]",
      {},
      "Of the center; of a point of a plane; of a mesh's origin."},
     {"obstacles.*.axis",
      Type::vector,
      "",
-     -far,
-     far,
+     -bound::far,
+     bound::far,
      "[0, 0, 1]",
      {},
      "Direction of the axis of a cylinder or capsule, of the third edge of a box, of a mesh's z, of the axis of "
@@ -70,24 +80,24 @@ const std::vector<Key> table = {
     {"obstacles.*.normal",
      Type::vector,
      "",
-     -far,
-     far,
+     -bound::far,
+     bound::far,
      "[0, 0, 1]",
      {},
      "Of a plane, instead of `axis`: towards the free side; any length."},
     {"obstacles.*.side",
      Type::vector,
      "",
-     -far,
-     far,
+     -bound::far,
+     bound::far,
      "[1, 0, 0]",
      {},
      "Of a box or mesh: direction of its first edge or its x, perpendicular to the axis; any length."},
     {"obstacles.*.turn",
      Type::number,
      "rad",
-     -many_turns,
-     many_turns,
+     -bound::many_turns,
+     bound::many_turns,
      "0",
      {},
      "A further rotation about the axis, right-handed. It may exceed a full turn."},
@@ -101,12 +111,12 @@ const std::vector<Key> table = {
      {},
      "Motion, as for clamps: a solid without a keyframe at 0 starts where its first one has it. What is no box or mesh "
      "does not turn about its axis while the axis changes."},
-    {"obstacles.*.keyframes.*.time", Type::number, "s", 0, long_time, "", {}, "Increasing. Required."},
-    {"obstacles.*.keyframes.*.position", Type::vector, "m", -far, far, "", {}, "As above."},
-    {"obstacles.*.keyframes.*.axis", Type::vector, "", -far, far, "", {}, "As above."},
-    {"obstacles.*.keyframes.*.normal", Type::vector, "", -far, far, "", {}, "As above."},
-    {"obstacles.*.keyframes.*.side", Type::vector, "", -far, far, "", {}, "As above."},
-    {"obstacles.*.keyframes.*.turn", Type::number, "rad", -many_turns, many_turns, "", {}, "As above."},
+    {"obstacles.*.keyframes.*.time", Type::number, "s", 0, bound::long_time, "", {}, "Increasing. Required."},
+    {"obstacles.*.keyframes.*.position", Type::vector, "m", -bound::far, bound::far, "", {}, "As above."},
+    {"obstacles.*.keyframes.*.axis", Type::vector, "", -bound::far, bound::far, "", {}, "As above."},
+    {"obstacles.*.keyframes.*.normal", Type::vector, "", -bound::far, bound::far, "", {}, "As above."},
+    {"obstacles.*.keyframes.*.side", Type::vector, "", -bound::far, bound::far, "", {}, "As above."},
+    {"obstacles.*.keyframes.*.turn", Type::number, "rad", -bound::many_turns, bound::many_turns, "", {}, "As above."},
 
     {"contact", Type::map, "", 0, 0, "", {}, "How the strip touches obstacles and itself."},
     {"contact.self", Type::boolean, "", 0, 0, "false", {}, "Does the strip touch itself? Otherwise it passes through."},
@@ -122,7 +132,7 @@ const std::vector<Key> table = {
      Type::number,
      "m",
      1e-9,
-     far,
+     bound::far,
      "",
      {},
      "Gap below which contact forces act; at rest a part of it stays. Two-stage: how fine the points are that feel a "
@@ -131,7 +141,7 @@ const std::vector<Key> table = {
      Type::number,
      "m",
      0,
-     far,
+     bound::far,
      "0",
      {},
      "Kept between the strip's middle surface and a solid, and between two parts of it, beside the gap: half the "
@@ -141,6 +151,6 @@ const std::vector<Key> table = {
 
 }  // namespace
 
-const std::vector<Key>& obstacle_keys() { return table; }
+const std::vector<Key>& obstacle_keys() { return obstacle_table; }
 
 }  // namespace wunderlich::scene

@@ -1,12 +1,11 @@
+#include "wunderlich/scene/key_bounds.hpp"
 #include "wunderlich/scene/schema.hpp"
 
 namespace wunderlich::scene {
 
 namespace {
 
-constexpr double long_time = 1e9;  // s
-
-const std::vector<Key> table = {
+const std::vector<Key> solver_table = {
     {"solver", Type::map, "", 0, 0, "", {}, "How the state is found."},
     {"solver.method",
      Type::choice,
@@ -41,7 +40,7 @@ const std::vector<Key> table = {
      Type::number,
      "s",
      1e-9,
-     long_time,
+     bound::long_time,
      "",
      {},
      "Time at which the motion ends; load parameter at the end of a path. Default: the last keyframe, or 1 without "
@@ -213,6 +212,6 @@ const std::vector<Key> table = {
 
 }  // namespace
 
-const std::vector<Key>& solver_keys() { return table; }
+const std::vector<Key>& solver_keys() { return solver_table; }
 
 }  // namespace wunderlich::scene

@@ -15,7 +15,7 @@ namespace wunderlich::scene {
 
 namespace {
 
-constexpr std::size_t longest_path = 4096;
+constexpr std::size_t longest_shown = 4096;
 constexpr std::size_t largest_file = std::size_t{4} << 20;
 
 const ShippedScene* find_shipped(const std::string& name) {
@@ -141,7 +141,7 @@ void build_strips(const Value& document, Scene& scene) {
 }  // namespace
 
 Scene read_scene_text(const std::string& text, const std::string& source, const std::vector<std::string>& overrides) {
-  Value document = parse_document(text, shown(source, longest_path));
+  Value document = parse_document(text, shown(source, longest_shown));
   Scene scene;
   const std::string folder = std::filesystem::path(source).parent_path().string();
   embed_meshes(folder, document);

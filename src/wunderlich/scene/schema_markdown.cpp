@@ -43,7 +43,7 @@ clamps:
 const char* const limits = R"(
 ## What is refused
 
-Beside values outside their range:
+Beside values outside their range_cell:
 
 - two supports that hold the same node (a clamped segment holds both of its nodes; an end clamp holds the end node);
 - supports that at any keyframe stand farther apart than the strip between them is long;
@@ -91,7 +91,7 @@ std::string type_name(const Key& key) {
   return key.type == Type::choices ? "list of some of " + list : key.type == Type::place ? list + " or a map" : list;
 }
 
-std::string range(const Key& key) {
+std::string range_cell(const Key& key) {
   switch (key.type) {
     case Type::number:
     case Type::integer:
@@ -123,11 +123,11 @@ std::string shown_path(const std::string& path) {
 
 std::string row(const Key& key) {
   const std::string fallback = key.fallback.empty() ? "" : "`" + key.fallback + "`";
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", shown_path(key.path), type_name(key), key.unit, range(key),
-                     fallback, key.doc);
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", shown_path(key.path), type_name(key), key.unit,
+                     range_cell(key), fallback, key.doc);
 }
 
-const char* const header = "\n| key | type | unit | range | default | meaning |\n|---|---|---|---|---|---|\n";
+const char* const header = "\n| key | type | unit | range_cell | default | meaning |\n|---|---|---|---|---|---|\n";
 
 }  // namespace
 

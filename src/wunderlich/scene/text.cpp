@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <locale>
+#include <numbers>
 #include <sstream>
 
 namespace wunderlich::scene {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 

@@ -49,8 +49,8 @@ double across_at(const ContactProblem& problem, int column) {
 }
 
 /// The facet of a segment in a solid's own frame; whether it is near is still to be found.
-ContactFacet facet_of(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
-                      std::size_t s, std::size_t solid, const Mat3& to_own) {
+ContactFacet contact_facet(const Ribbon& ribbon, const ContactProblem& problem, const Chain& chain, const Kinematics& k,
+                           std::size_t s, std::size_t solid, const Mat3& to_own) {
   ContactFacet facet;
   const Vec3 d2 = to_own * k.frame[s].col(1), d3 = to_own * k.frame[s].col(2);
   facet.start = to_own * (k.r[s] - problem.solids[solid].pose.position);
@@ -260,7 +260,7 @@ void find_points(const Ribbon& ribbon, const ContactProblem& problem, const Chai
   for (std::size_t i = 0; i < count; ++i) {
     const Mat3 to_own = problem.solids[i].pose.frame.conjugate().toRotationMatrix();
     for (std::size_t s = 0; s < n; ++s)
-      points.facets[s * count + i] = facet_of(ribbon, problem, chain, k, s, i, to_own);
+      points.facets[s * count + i] = contact_facet(ribbon, problem, chain, k, s, i, to_own);
   }
   for (std::size_t index = 0; index < points.facets.size(); ++index) {
     ContactFacet& facet = points.facets[index];

@@ -6,6 +6,7 @@
 
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/solver/chain_contact.hpp"
+#include "wunderlich/solver/facet_pairs.hpp"
 
 namespace wunderlich::solver {
 
@@ -21,18 +22,16 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kParallel = 1e-3;  // sine squared between two edges below which their barrier is weakened
-constexpr double kRim = 0.125;      // of the barrier's distance: how far a prism around a cylinder's end may stand out
-constexpr double kNotFar = 0.25;    // of the width: what is nearer to a solid's box is looked at
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRim = 0.125;    // of the barrier's distance: how far a prism around a cylinder's end may stand out
+constexpr double kNotFar = 0.25;  // of the width: what is nearer to a solid's box is looked at
 
-const PairPoints& facet_of(const MeshProblem& problem, const MeshPoints& points, std::size_t solid,
-                           std::size_t segment) {
+const PairPoints& corners_of(const MeshProblem& problem, const MeshPoints& points, std::size_t solid,
+                             std::size_t segment) {
   return points.facets[solid * (points.facets.size() / problem.solids.size()) + segment];
 }
 
 PairPoints points_of(const FacetPair& pair, const MeshProblem& problem, const MeshPoints& points) {
-  return points_of(pair, facet_of(problem, points, pair.solid, pair.segment), *problem.solids[pair.solid].mesh);
+  return points_of(pair, corners_of(problem, points, pair.solid, pair.segment), *problem.solids[pair.solid].mesh);
 }
 
 /// Edges' lengths are those of the flat strip, which do not change.
@@ -78,24 +77,24 @@ void place_facets(const Ribbon& ribbon, const Chain& chain, const Kinematics& k,
 }
 
 /// How a corner of a facet moves.
-struct Lever {
+struct CornerLever {
   Vec3 arm;       ///< from the segment's far node [m]
   Vec3 slant[2];  ///< with eta at the segment's start and end [m]
 };
 
-Lever lever_of(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t s, int corner) {
+CornerLever lever_of(const Ribbon& ribbon, const Chain& chain, const Kinematics& k, std::size_t s, int corner) {
   const double v = (corner % 2 == 0 ? -0.5 : 0.5) * ribbon.width;
   const int end = corner / 2;
   const auto node = s + static_cast<std::size_t>(end);
   const Vec3 d2 = k.frame[s].col(1), d3 = k.frame[s].col(2);
-  Lever lever{(v * chain.eta[node] - (end == 0 ? ribbon.rest_length[s] : 0)) * d3 + v * d2,
-              {Vec3::Zero(), Vec3::Zero()}};
+  CornerLever lever{(v * chain.eta[node] - (end == 0 ? ribbon.rest_length[s] : 0)) * d3 + v * d2,
+                    {Vec3::Zero(), Vec3::Zero()}};
   if (geometry::eta_is_free(ribbon, static_cast<int>(node))) lever.slant[end] = v * d3;
   return lever;
 }
 
 /// Second derivative of a corner's place, with the force that is the gradient there.
-void add_turning(const Lever& lever, const Vec3& force, math::Mat8& geometric) {
+void add_turning(const CornerLever& lever, const Vec3& force, math::Mat8& geometric) {
   geometric.block<3, 3>(3, 3) +=
       0.5 * (force * lever.arm.transpose() + lever.arm * force.transpose()) - force.dot(lever.arm) * Mat3::Identity();
   for (int c = 0; c < 2; ++c) {
@@ -168,7 +167,7 @@ void find_mesh_pairs(const Ribbon& ribbon, const MeshProblem& problem, const Cha
   points.placed.assign(problem.solids.size(), 0);
   points.extents.clear();
   points.pairs.clear();
-  points.beyond = kInfinity;
+  points.beyond = std::numeric_limits<double>::infinity();
   if (problem.solids.empty()) return;
   points.strip = box_around(ribbon, chain, k);
   const double far = problem.thickness + problem.distance;
@@ -286,7 +285,7 @@ void add_mesh_contact(const Ribbon& ribbon, const MeshProblem& problem, const Ch
     for (int i = 0; i < 4; ++i) {
       const int corner = pair.corner[static_cast<std::size_t>(i)];
       if (corner < 0) continue;
-      const Lever lever = lever_of(ribbon, chain, k, s, corner);
+      const CornerLever lever = lever_of(ribbon, chain, k, s, corner);
       Eigen::Matrix<double, 3, 8> in_space;
       in_space << Mat3::Identity(), -math::skew(lever.arm), lever.slant[0], lever.slant[1];
       move.middleRows<3>(3 * i) = to_space.transpose() * in_space;

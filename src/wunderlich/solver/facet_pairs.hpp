@@ -6,6 +6,10 @@
 
 namespace wunderlich::solver {
 
+/// Of |e1|^2 |e2|^2: edges whose cross product squared is less count as parallel, and their barrier is weakened.
+/// @eq Li2020:18
+inline constexpr double kParallel = 1e-3;
+
 /// Part of a facet with part of a solid. Corners: 0, 1 at the segment's start, 2, 3 at its end, even ones at -w/2.
 struct FacetPair {
   contact::PairKind kind;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "wunderlich/math/rotation.hpp"
 #include "wunderlich/solver/path_step.hpp"
@@ -10,12 +11,12 @@ using geometry::Chain;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr int kBendSteps = 12;          // analytic states, for the film
-constexpr double kTwistStep = kPi / 4;  // of the end of a ring
+using std::numbers::pi;
+constexpr int kBendSteps = 12;         // analytic states, for the film
+constexpr double kTwistStep = pi / 4;  // of the end of a ring
 // Where the strip feels itself, every turn is made in small steps that its inertia damps, so that it gives way as a
 // slow experiment would, and does not jump to whatever minimum is lowest.
-constexpr double kCarefulStep = kPi / 30;
+constexpr double kCarefulStep = pi / 30;
 constexpr double kTwistTime = 0.25;   // of a step's inertia, in sqrt(rho w^4 / D)
 constexpr double kLongestTime = 300;  // at the end of relaxing
 constexpr double kWideGap = 0.05;     // widths, until it rests
@@ -26,8 +27,8 @@ constexpr double kPlanarAmplitude = 15.1;  // of the figure-eight's start, kappa
 void set_bent(const PathProblem& path, double share, Chain& chain) {
   const bool planar = is_planar(path);
   for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
-    const double phase = 2 * kPi * path.cut.node_u[i] / path.cut.length;
-    chain.kappa[i] = share / path.cut.length * (planar ? kPlanarAmplitude * std::cos(phase) : 2 * kPi);
+    const double phase = 2 * pi * path.cut.node_u[i] / path.cut.length;
+    chain.kappa[i] = share / path.cut.length * (planar ? kPlanarAmplitude * std::cos(phase) : 2 * pi);
   }
 }
 
@@ -85,7 +86,7 @@ PathStep move_alone(const PathProblem& path, const PathState& state, ChainProble
 
 /// Turns the end of the ring about the tangent while its position stays at the start's.
 PathStep twist_step(const PathProblem& path, PathState& state, NewtonWorkspace& work) {
-  const double total = path.ribbon.half_twists * kPi;
+  const double total = path.ribbon.half_twists * pi;
   const bool feels = path.surroundings.contact.self;
   const double planned = total == 0 ? 1 : std::min(1.0, (feels ? kCarefulStep : kTwistStep) / std::abs(total));
   if (state.dt == 0) state.dt = planned;

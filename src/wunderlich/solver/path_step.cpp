@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "wunderlich/solver/load_step.hpp"
 
@@ -13,7 +14,7 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double kPathBarrier =
     3e-2;  // e1 on the way (with less, twist-pi ends in a higher minimum); then the path's own
 constexpr double kSmallestStep = 1.0 / 1024;
@@ -38,7 +39,7 @@ bool is_flat(const Chain& chain, double length, double tolerance) {
 
 void seed(const Ribbon& ribbon, Chain& chain) {
   for (std::size_t i = 0; i < chain.kappa.size(); ++i) {
-    const double phase = 2 * kPi * ribbon.node_u[i] / ribbon.length;
+    const double phase = 2 * pi * ribbon.node_u[i] / ribbon.length;
     if (geometry::kappa_is_free(ribbon, static_cast<int>(i))) chain.kappa[i] = -0.3 / ribbon.length * std::cos(phase);
     if (geometry::eta_is_free(ribbon, static_cast<int>(i))) chain.eta[i] = -0.1 * std::sin(phase);
   }

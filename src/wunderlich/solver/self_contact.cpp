@@ -7,6 +7,7 @@
 #include "wunderlich/contact/barrier.hpp"
 #include "wunderlich/contact/travel.hpp"
 #include "wunderlich/contact/triangle_mesh.hpp"
+#include "wunderlich/solver/facet_pairs.hpp"
 
 namespace wunderlich::solver {
 
@@ -17,11 +18,10 @@ using Strips = std::span<const StripPlace>;
 
 namespace {
 
-constexpr double kBending = 60;     // barrier over bending, and
-constexpr double kWeight = 100;     // over the weight of a segment: light contact, few iterations
-constexpr double kNeighbours = 2;   // gaps in the flat pattern up to which parts are neighbours
-constexpr double kParallel = 1e-3;  // of |e1|^2 |e2|^2: edges that count as parallel   @eq Li2020:18
-constexpr double kOpenSeam = 1;     // widths
+constexpr double kBending = 60;    // barrier over bending, and
+constexpr double kWeight = 100;    // over the weight of a segment: light contact, few iterations
+constexpr double kNeighbours = 2;  // gaps in the flat pattern up to which parts are neighbours
+constexpr double kOpenSeam = 1;    // widths
 
 PairPoints points_of(const SelfPair& pair, const std::vector<Vec3>& corners) {
   PairPoints x;

@@ -11,8 +11,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 /// `energy.normalized`, `ends.1.force.0`, `kappa_zeros.count`, `shape.max_kappa`: in the summary, or at the top.
 const Json* at_path(const Json& body, const std::string& path) {
   const Json* here = path.compare(0, 6, "shape.") == 0 ? &body : body.contains("summary") ? &body["summary"] : nullptr;

@@ -1,11 +1,15 @@
 /// Figures of a run by name.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 namespace wunderlich::sweep {
+
+/// A figure that a run does not have.
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// `energy.normalized`, `ends.1.force.0`, `kappa_zeros.count` of the summary, `shape.max_kappa`; NaN where this run has
 /// none. Truth is 1.

@@ -28,8 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 bool is_timing(const Collected& result) { return result.path.compare(0, 7, "timing.") == 0; }
 
 /// Text as one cell.

@@ -1,12 +1,13 @@
 #include "wunderlich/baseline/rod/frames.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace wunderlich::baseline::rod {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 Vec3 tangent(const State& state, std::size_t edge) { return (state.x[edge + 1] - state.x[edge]).normalized(); }
 
@@ -18,7 +19,7 @@ double angle_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
 
 Joined joined(const Rod& rod, std::size_t node) {
   if (node < rod.edges()) return {node - 1, node, node + 1, 0};
-  return {rod.edges() - 1, 0, 1, kPi * rod.half_twists};
+  return {rod.edges() - 1, 0, 1, pi * rod.half_twists};
 }
 
 double turn_between(const State& state, const Joined& edges) {
@@ -49,7 +50,7 @@ void move(const Rod& rod, const State& from, const std::vector<double>& incremen
   for (std::size_t i = 0; i < rod.nodes(); ++i) {
     if (rod.hinge_length[i] == 0) continue;
     const double change = turn_between(to, joined(rod, i)) - from.reference_twist[i];
-    to.reference_twist[i] = from.reference_twist[i] + change - 2 * kPi * std::round(change / (2 * kPi));
+    to.reference_twist[i] = from.reference_twist[i] + change - 2 * pi * std::round(change / (2 * pi));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "wunderlich/baseline/rod/frames.hpp"
 
@@ -9,7 +10,7 @@ namespace wunderlich::baseline::rod {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 State empty_state(const Rod& rod) {
   State state;
@@ -79,15 +80,15 @@ State straight_state(const Rod& rod) {
 State ring_state(const Rod& rod) {
   assert(rod.is_loop());
   State state = empty_state(rod);
-  const double n = rod.segments, radius = rod.length / n / (2 * std::sin(kPi / n));
+  const double n = rod.segments, radius = rod.length / n / (2 * std::sin(pi / n));
   for (std::size_t i = 0; i < rod.nodes(); ++i) {
-    const double angle = 2 * kPi * static_cast<double>(i) / n;
+    const double angle = 2 * pi * static_cast<double>(i) / n;
     state.x[i] = radius * Vec3(std::sin(angle), 1 - std::cos(angle), 0);
   }
   state.x.back() = state.x.front();
   for (std::size_t j = 0; j < rod.edges(); ++j) {
     state.reference[j] = Vec3::UnitZ().cross(state.x[j + 1] - state.x[j]).normalized();  // m2 square to the plane
-    state.theta[j] = kPi * rod.half_twists * (static_cast<double>(j) + 0.5) / n;
+    state.theta[j] = pi * rod.half_twists * (static_cast<double>(j) + 0.5) / n;
   }
   return state;
 }
@@ -108,7 +109,7 @@ State state_from(const Rod& rod, const geometry::State& ribbon_state) {
     if (rod.hinge_length[i] == 0) continue;
     const Joined edges = joined(rod, i);
     const double turned = turn_between(state, edges) + edges.turn;
-    state.reference_twist[i] = turned - 2 * kPi * std::round(turned / (2 * kPi)) - edges.turn;
+    state.reference_twist[i] = turned - 2 * pi * std::round(turned / (2 * pi)) - edges.turn;
   }
   return state;
 }

@@ -6,7 +6,7 @@ namespace wunderlich::baseline::shell {
 
 namespace {
 
-constexpr double kDependent = 1e-6;  // of the least that a row's own product can be
+constexpr double kDependentRows = 1e-6;  // of the least that a row's own product can be
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
@@ -77,7 +77,7 @@ ImplicitSystem make_implicit_system(const Shell& shell, const Hold& hold, const 
   const int size = system.first[3] + static_cast<int>(system.rows.size()) + 3 * static_cast<int>(shell.boundary.rows());
   Triplets triplets;
   const double largest = add_constant(system, shell, hold, implicit, triplets);
-  for (int r = system.first[3]; r < size; ++r) triplets.emplace_back(r, r, -kDependent / largest);
+  for (int r = system.first[3]; r < size; ++r) triplets.emplace_back(r, r, -kDependentRows / largest);
   const auto each = [&](const auto& use) {
     for (std::size_t r = 0; r < system.rows.size(); ++r) {
       for (std::size_t side = 0; side < 2; ++side) {

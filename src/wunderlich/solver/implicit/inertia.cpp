@@ -25,7 +25,7 @@ Mat3 facet_moments(const Ribbon& ribbon, KineticEnergy kinetic, const std::vecto
 }
 
 /// Middle, d3 and d2 of segment s from the points, as columns: they are linear in them.
-Mat3 facet_of(const Ribbon& ribbon, const std::vector<Vec3>& points, std::size_t s) {
+Mat3 facet_at(const Ribbon& ribbon, const std::vector<Vec3>& points, std::size_t s) {
   const Vec3 &a = points[s], &b = points[s + 1];
   Mat3 facet;
   facet << 0.5 * (a + b), (b - a) / ribbon.rest_length[s], points[static_cast<std::size_t>(ribbon.segments) + 1 + s];
@@ -83,7 +83,7 @@ double kinetic_energy(const Ribbon& ribbon, KineticEnergy kinetic, const Points&
     twice += energy::turn_inertia(ribbon, s) * points.v[n + 1 + s].squaredNorm();
   }
   for (std::size_t s = 0; s < n && kinetic == KineticEnergy::full; ++s) {
-    const Mat3 v = facet_of(ribbon, points.v, s);
+    const Mat3 v = facet_at(ribbon, points.v, s);
     twice += (facet_moments(ribbon, kinetic, eta, s) * v.transpose() * v).trace();
   }
   return 0.5 * twice;
@@ -97,8 +97,8 @@ Momentum momentum(const Ribbon& ribbon, KineticEnergy kinetic, const Points& poi
     total.angular += ribbon.node_mass[i] * points.x[i].cross(points.v[i]);
   }
   for (std::size_t s = 0; s < n && kinetic != KineticEnergy::centerline; ++s) {
-    const Mat3 m = facet_moments(ribbon, kinetic, eta, s), x = facet_of(ribbon, points.x, s);
-    const Mat3 impulse = facet_of(ribbon, points.v, s) * m;
+    const Mat3 m = facet_moments(ribbon, kinetic, eta, s), x = facet_at(ribbon, points.x, s);
+    const Mat3 impulse = facet_at(ribbon, points.v, s) * m;
     if (kinetic == KineticEnergy::full) total.linear += impulse.col(0);
     for (int k = 0; k < 3; ++k) total.angular += x.col(k).cross(impulse.col(k));
   }

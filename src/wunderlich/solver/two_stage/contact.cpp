@@ -20,7 +20,6 @@ constexpr double kEnough = 0.03;           // of the gaps' tolerance, where forc
 constexpr int kMostSweeps = 100;           // of a small dense problem: what is left the next round takes up
 constexpr double kLengthTolerance = 1e-7;  // |e|/l - 1
 constexpr double kLongestTurn = 0.4;       // of an edge or a frame in one round [rad]
-constexpr double kToBoundary = 0.9;        // share of the way to |x| = 1 in one round
 
 /// Share of work.motion that turns nothing too far and keeps |x| < 1.
 double longest_motion(const Ribbon& ribbon, const geometry::State& shape, const Workspace& work) {

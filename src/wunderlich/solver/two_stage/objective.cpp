@@ -16,7 +16,6 @@ using geometry::Ribbon;
 namespace {
 
 constexpr double kLargestTurn = 0.4;  // of a frame in one iteration [rad]
-constexpr double kToBoundary = 0.9;   // share of the way to |x| = 1 that one iteration may go
 
 double ruling_ratio(const Ribbon& ribbon, const geometry::State& shape, std::size_t s) {
   return 0.5 * ribbon.width * (shape.eta[s + 1] - shape.eta[s]) / ribbon.rest_length[s];

@@ -10,6 +10,9 @@
 
 namespace wunderlich::solver::two_stage {
 
+/// Share of the way to |w eta' / 2| = 1 that one iteration may go.
+inline constexpr double kToBoundary = 0.9;
+
 inline int block_count(const geometry::Ribbon& ribbon) {
   return ribbon.is_loop() ? ribbon.segments : ribbon.node_count();
 }
