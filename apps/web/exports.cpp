@@ -286,9 +286,14 @@ EXPORT int wl_array_size(int which) {
   return static_cast<int>(all.at(static_cast<std::size_t>(which)));
 }
 
-/// The answer: the animated surface as a GLB file, or the first strip's pattern as SVG.
+/// The answer: the animated surface and the obstacles as a GLB file, or the first strip's pattern as SVG.
 EXPORT int wl_glb() {
-  return guarded([] { answer = io::glb(session->film(), session->scene().name); });
+  return guarded([] {
+    const std::vector<Frame> film = session->film();
+    std::vector<double> times;
+    for (const Frame& frame : film) times.push_back(frame.time);
+    answer = io::glb(film, scene::bodies_of(session->scene(), times), session->scene().name);
+  });
 }
 EXPORT int wl_pattern() {
   return guarded([] {

@@ -20,6 +20,7 @@ KINDS = {  # a scene of each kind, how it is asked for, and how many strips it h
     "loop": (["ring"], 1),
     "several-strips": (["paper-chain", *SHORT], 3),
     "obstacles": (["drape-cylinder", *SHORT], 1),
+    "moving-obstacles": (["belt", *SHORT], 1),
     "motion": (["swing", *SHORT], 1),
 }
 
@@ -45,6 +46,7 @@ class Gltf(ProgramTest):
                 self.assertEqual(found["counts"], [0, 0, 0, 0], found["messages"])
                 self.assertGreater(found["info"]["totalTriangleCount"], 0)
                 self.assertEqual(found["info"]["animationCount"], 0 if kind == "single" else 1)
+                self.assertEqual(found["info"]["materialCount"], 2 if kind in ("obstacles", "moving-obstacles") else 1)
 
     def single_frame(self):
         self.expect(3, "run", "strip.yaml", "--quiet", "--formats", "glb", "--out", "single", "--set", "solver.max_iterations=1")

@@ -86,7 +86,7 @@ Gltf open(const std::string& file) {
 
 TEST(Glb, MorphTargetsAddUpToTheFrames) {
   const RunOutput run = sample_run();
-  const Gltf gltf = open(glb(run.frames, "coil"));
+  const Gltf gltf = open(glb(run.frames, run.bodies, "coil"));
   const auto& primitive = gltf.json["meshes"][0]["primitives"][0];
   ASSERT_EQ(primitive["targets"].size(), 2u);
   const std::size_t base = gltf.offset(primitive["attributes"]["POSITION"]);
@@ -111,7 +111,7 @@ TEST(Glb, MorphTargetsAddUpToTheFrames) {
 
 TEST(Glb, DescribesItsData) {
   const RunOutput run = sample_run();
-  const Gltf gltf = open(glb(run.frames, "coil"));
+  const Gltf gltf = open(glb(run.frames, run.bodies, "coil"));
   EXPECT_EQ(gltf.json["asset"]["version"], "2.0");
   EXPECT_EQ(gltf.json["materials"][0]["doubleSided"], true);
   std::size_t end = 0;
@@ -131,13 +131,51 @@ TEST(Glb, DescribesItsData) {
 TEST(Glb, StandsStillWithOneFrameAndKeepsTimesIncreasing) {
   RunOutput run = sample_run();
   run.frames[2].time = run.frames[1].time;
-  const Gltf moving = open(glb(run.frames, "coil"));
+  const Gltf moving = open(glb(run.frames, run.bodies, "coil"));
   const std::size_t keys = moving.offset(moving.json["animations"][0]["samplers"][0]["input"]);
   EXPECT_GT(load<float>(moving.bin, keys + 8), load<float>(moving.bin, keys + 4));
   run.frames.resize(1);
-  const Gltf still = open(glb(run.frames, "coil"));
+  const Gltf still = open(glb(run.frames, run.bodies, "coil"));
   EXPECT_FALSE(still.json.contains("animations"));
   EXPECT_FALSE(still.json["meshes"][0]["primitives"][0].contains("targets"));
+}
+
+/// Where a node is at key k of its animation, and how it is turned there.
+Pose animated(const Gltf& gltf, int node, std::size_t k) {
+  Pose pose;
+  for (const auto& channel : gltf.json["animations"][0]["channels"]) {
+    if (channel["target"]["node"] != node) continue;
+    const std::size_t data = gltf.offset(gltf.json["animations"][0]["samplers"][channel["sampler"].get<int>()]["output"]);
+    if (channel["target"]["path"] == "translation") pose.position = load_point(gltf.bin, data + 12 * k);
+    if (channel["target"]["path"] == "rotation") {
+      for (std::size_t c = 0; c < 4; ++c) pose.frame.coeffs()[c] = load<float>(gltf.bin, data + 16 * k + 4 * c);
+    }
+  }
+  return pose;
+}
+
+TEST(Glb, SolidsStandAndMoveBesideTheRibbon) {
+  RunOutput run = sample_run();
+  const Mesh block{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, std::vector<Vec3>(3, Vec3::UnitZ()), {{0, 1, 2}}, {}};
+  const Pose still{Vec3(1, 2, 3), Quat(Eigen::AngleAxisd(0.4, Vec3::UnitX()))};
+  std::vector<Pose> turning;
+  for (int k = 0; k < 3; ++k) turning.push_back({Vec3(0, k, 0), Quat(Eigen::AngleAxisd(2.5 * k, Vec3::UnitZ()))});
+  run.bodies = {{block, {still, still, still}}, {block, turning}};
+  const Gltf gltf = open(glb(run.frames, run.bodies, "coil"));
+  ASSERT_EQ(gltf.json["scenes"][0]["nodes"], (std::vector<int>{0, 1, 2}));
+  const auto& node = gltf.json["nodes"][1];
+  const Quat upright(node["rotation"][3].get<double>(), node["rotation"][0], node["rotation"][1], node["rotation"][2]);
+  // y up: (x, y, z) of the scene is (x, z, -y).
+  EXPECT_EQ(node["translation"], (std::vector<double>{1, 3, -2}));
+  const Vec3 corner = still.frame * Vec3(0, 1, 0);
+  EXPECT_LT((upright * Vec3(0, 1, 0) - Vec3(corner.x(), corner.z(), -corner.y())).norm(), 1e-12);
+  EXPECT_EQ(gltf.json["animations"][0]["channels"].size(), 3u) << "weights, and two of the solid that moves";
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pose pose = animated(gltf, 2, k);
+    const Vec3 at = turning[k].frame * Vec3(1, 0, 0) + turning[k].position, found = pose.frame * Vec3(1, 0, 0) + pose.position;
+    EXPECT_LT((found - Vec3(at.x(), at.z(), -at.y())).norm(), 1e-6);
+    if (k > 0) EXPECT_GE(pose.frame.dot(animated(gltf, 2, k - 1).frame), 0) << "turns the short way";
+  }
 }
 
 TEST(Pc2, HoldsEveryFrameInTheOrderOfTheObj) {

@@ -55,7 +55,7 @@ size = max(abs(x) for point in frames[-1] for x in point)
 tolerance = 1e-5 * size
 check(len(list((run / "frames").glob("*.vtp"))) == len(frames), "the cache has other frames than the VTP files")
 
-(strip,) = imported(bpy.ops.import_scene.gltf, filepath=str(run / "ribbon.glb"))
+(strip,) = (item for item in imported(bpy.ops.import_scene.gltf, filepath=str(run / "ribbon.glb")) if item.data.shape_keys)
 keys = strip.data.shape_keys
 check(len(keys.key_blocks) == len(frames), f"{len(keys.key_blocks)} shapes in the GLB, {len(frames)} frames")
 last = int(round(keys.animation_data.action.frame_range[1])) if keys.animation_data.action else \

@@ -1,7 +1,10 @@
 #include "wunderlich/io/glb.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +22,8 @@ constexpr int component_float = 5126;
 constexpr int component_uint = 5125;
 constexpr int target_vertices = 34962;
 constexpr int target_indices = 34963;
+
+constexpr int ribbon_material = 0, obstacle_material = 1;
 
 /// The binary chunk and the JSON that describes its parts.
 struct Buffer {
@@ -59,17 +64,24 @@ int add_vectors(Buffer& buffer, const std::vector<Vec3>& vectors, const std::vec
   return accessor;
 }
 
-Json primitive(Buffer& buffer, const std::vector<Frame>& frames) {
-  const Mesh& first = frames.front().surface;
+/// A mesh at rest: its points, normals and triangles.
+Json primitive(Buffer& buffer, const Mesh& mesh, int material) {
   std::string indices;
-  for (const auto& triangle : first.triangles) {
+  for (const auto& triangle : mesh.triangles) {
     for (const int point : triangle) append(indices, static_cast<std::uint32_t>(point));
   }
   Json out;
-  out["attributes"]["POSITION"] = add_vectors(buffer, first.points, nullptr, true);
-  out["attributes"]["NORMAL"] = add_vectors(buffer, first.normals, nullptr, false);
-  out["indices"] = buffer.add(indices, component_uint, "SCALAR", 3 * first.triangles.size(), target_indices);
-  out["material"] = 0;
+  out["attributes"]["POSITION"] = add_vectors(buffer, mesh.points, nullptr, true);
+  out["attributes"]["NORMAL"] = add_vectors(buffer, mesh.normals, nullptr, false);
+  out["indices"] = buffer.add(indices, component_uint, "SCALAR", 3 * mesh.triangles.size(), target_indices);
+  out["material"] = material;
+  return out;
+}
+
+/// The ribbon: the first frame, and what the others differ from it by.
+Json deforming(Buffer& buffer, const std::vector<Frame>& frames) {
+  const Mesh& first = frames.front().surface;
+  Json out = primitive(buffer, first, ribbon_material);
   for (std::size_t f = 1; f < frames.size(); ++f) {
     const Mesh& mesh = frames[f].surface;
     assert(mesh.points.size() == first.points.size());
@@ -91,39 +103,106 @@ std::vector<float> key_times(const std::vector<Frame>& frames) {
   return times;
 }
 
-Json animation(Buffer& buffer, const std::vector<Frame>& frames) {
-  const std::vector<float> times = key_times(frames);
-  std::string keys, weights;
-  for (const float time : times) append(keys, time);
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    for (std::size_t target = 1; target < frames.size(); ++target) append(weights, f == target ? 1.0f : 0.0f);
+/// One clip in which everything moves at the same times.
+class Animation {
+ public:
+  Animation(Buffer& buffer, const std::vector<float>& times) : buffer_(buffer) {
+    std::string keys;
+    for (const float time : times) append(keys, time);
+    input_ = buffer.add(keys, component_float, "SCALAR", times.size(), 0);
+    buffer.set_bounds(input_, {times.front()}, {times.back()});
+    json_ = {{"name", "run"}, {"samplers", Json::array()}, {"channels", Json::array()}};
   }
-  const int input = buffer.add(keys, component_float, "SCALAR", times.size(), 0);
-  buffer.set_bounds(input, {times.front()}, {times.back()});
-  const int output = buffer.add(weights, component_float, "SCALAR", frames.size() * (frames.size() - 1), 0);
-  Json out;
-  out["name"] = "run";
-  out["samplers"] = Json::array({{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}});
-  out["channels"] = Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}});
+
+  void add(std::size_t node, const char* path, const std::string& block, const char* type, std::size_t count) {
+    const int output = buffer_.add(block, component_float, type, count, 0);
+    json_["channels"].push_back({{"sampler", json_["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+    json_["samplers"].push_back({{"input", input_}, {"output", output}, {"interpolation", "LINEAR"}});
+  }
+
+  const Json& json() const { return json_; }
+
+ private:
+  Buffer& buffer_;
+  int input_ = 0;
+  Json json_;
+};
+
+void animate_ribbon(std::size_t frames, Animation& animation) {
+  std::string weights;
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t target = 1; target < frames; ++target) append(weights, f == target ? 1.0f : 0.0f);
+  }
+  animation.add(0, "weights", weights, "SCALAR", frames * (frames - 1));
+}
+
+/// A pose with z up as glTF has it, with y up; of the two quaternions the one nearer to the last.
+Pose upright(const Pose& pose, const Quat& last) {
+  const Quat upward(std::sqrt(0.5), -std::sqrt(0.5), 0, 0);  // a quarter turn about x
+  Pose out{upward * pose.position, upward * pose.frame};
+  if (out.frame.dot(last) < 0) out.frame.coeffs() = -out.frame.coeffs();
   return out;
 }
 
-Json describe(Buffer& buffer, const std::vector<Frame>& frames, const std::string& name) {
+void animate_body(std::size_t node, const std::vector<Pose>& poses, Animation& animation) {
+  std::string places, frames;
+  Quat last = Quat::Identity();
+  for (const Pose& given : poses) {
+    const Pose pose = upright(given, last);
+    last = pose.frame;
+    append_float3(places, pose.position);
+    for (int k = 0; k < 4; ++k) append(frames, static_cast<float>(pose.frame.coeffs()[k]));
+  }
+  animation.add(node, "translation", places, "VEC3", poses.size());
+  animation.add(node, "rotation", frames, "VEC4", poses.size());
+}
+
+Json node(const std::string& name, std::size_t mesh, const Pose& given) {
+  const Pose pose = upright(given, Quat::Identity());
+  const Vec3& p = pose.position;
+  const Vec4 q = pose.frame.coeffs();
+  return {{"name", name}, {"mesh", mesh}, {"translation", {p.x(), p.y(), p.z()}}, {"rotation", {q[0], q[1], q[2], q[3]}}};
+}
+
+Json material(const char* name, const std::array<double, 3>& colour, double roughness) {
+  return {{"name", name},
+          {"doubleSided", true},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}},
+            {"metallicFactor", 0.0},
+            {"roughnessFactor", roughness}}}};
+}
+
+bool moves(const Body& body) {
+  return std::any_of(body.poses.begin(), body.poses.end(), [&](const Pose& pose) {
+    return pose.position != body.poses.front().position || pose.frame.coeffs() != body.poses.front().frame.coeffs();
+  });
+}
+
+Json describe(Buffer& buffer, const std::vector<Frame>& frames, const std::vector<Body>& bodies, const std::string& name) {
   Json out;
   out["asset"] = {{"version", "2.0"}, {"generator", std::string(program) + " " + version}};
   out["scene"] = 0;
   out["scenes"] = Json::array({{{"nodes", {0}}}});
-  const double half = std::sqrt(0.5);  // a quarter turn about x: z up becomes y up
-  out["nodes"] = Json::array({{{"name", name}, {"mesh", 0}, {"rotation", {-half, 0.0, 0.0, half}}}});
-  out["materials"] = Json::array(
-      {{{"name", "ribbon"},
-        {"doubleSided", true},
-        {"pbrMetallicRoughness",
-         {{"baseColorFactor", {0.80, 0.36, 0.16, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.55}}}}});
-  out["meshes"] = Json::array({{{"name", name}, {"primitives", Json::array({primitive(buffer, frames)})}}});
+  out["nodes"] = Json::array({node(name, 0, {})});
+  out["materials"] = Json::array({material("ribbon", {0.80, 0.36, 0.16}, 0.55)});
+  out["meshes"] = Json::array({{{"name", name}, {"primitives", Json::array({deforming(buffer, frames)})}}});
+  if (!bodies.empty()) out["materials"].push_back(material("obstacle", {0.62, 0.64, 0.67}, 0.8));
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const std::string label = "obstacle " + std::to_string(k);
+    out["scenes"][0]["nodes"].push_back(k + 1);
+    out["nodes"].push_back(node(label, k + 1, bodies[k].poses.front()));
+    out["meshes"].push_back(
+        {{"name", label}, {"primitives", Json::array({primitive(buffer, bodies[k].mesh, obstacle_material)})}});
+  }
   if (frames.size() > 1) {
     out["meshes"][0]["weights"] = std::vector<double>(frames.size() - 1, 0.0);
-    out["animations"] = Json::array({animation(buffer, frames)});
+    Animation animation(buffer, key_times(frames));
+    animate_ribbon(frames.size(), animation);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (moves(bodies[k])) animate_body(k + 1, bodies[k].poses, animation);
+    }
+    out["animations"] = Json::array({animation.json()});
   }
   out["buffers"] = Json::array({{{"byteLength", buffer.bytes.size()}}});
   out["bufferViews"] = buffer.views;
@@ -140,10 +219,11 @@ void add_chunk(std::string& out, std::string chunk, const char* type, char paddi
 
 }  // namespace
 
-std::string glb(const std::vector<Frame>& frames, const std::string& name) {
+std::string glb(const std::vector<Frame>& frames, const std::vector<Body>& bodies, const std::string& name) {
   assert(!frames.empty());
+  assert(std::all_of(bodies.begin(), bodies.end(), [&](const Body& b) { return b.poses.size() == frames.size(); }));
   Buffer buffer;
-  const Json description = describe(buffer, frames, name);
+  const Json description = describe(buffer, frames, bodies, name);
   std::string chunks;
   add_chunk(chunks, description.dump(-1, ' ', false, Json::error_handler_t::replace), "JSON", ' ');
   add_chunk(chunks, std::move(buffer.bytes), "BIN\0", '\0');

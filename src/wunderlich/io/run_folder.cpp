@@ -85,7 +85,7 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
     case Format::vtp:
       return render_vtp(output, stem);
     case Format::glb:
-      return {{ribbon + ".glb", glb(output.frames, output.summary.scene)}};
+      return {{ribbon + ".glb", glb(output.frames, output.bodies, output.summary.scene)}};
     case Format::pc2:
       return {{ribbon + "_rest.obj", obj(output.frames.front().surface, "ribbon")},
               {ribbon + ".pc2", pc2(output.frames)}};
