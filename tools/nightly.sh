@@ -14,6 +14,15 @@ echo "nightly: the paper's figures, in full (build/validation)"
 tools/setup.sh validation
 /usr/bin/python3 validation/run.py
 
+echo "nightly: pip install from a bare copy of the sources, nothing of it built"
+rm -rf build/bare && mkdir -p build/bare/source && git archive HEAD | tar -x -C build/bare/source
+/usr/bin/python3 -m venv --system-site-packages build/bare/venv
+(time build/bare/venv/bin/pip install --no-index --no-build-isolation build/bare/source)
+build/bare/venv/bin/python -c 'import wunderlich; print(wunderlich.equilibrium("moebius").summary["energy"]["normalized"])'
+
+echo "nightly: the links of the site, by linkchecker"
+linkchecker --no-warnings build/site/index.html
+
 echo "nightly: clang-tidy on everything"
 tools/tidy.sh
 

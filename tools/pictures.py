@@ -3,10 +3,12 @@
 
 usage: tools/pictures.py [--program PATH] [SCENE...]             needs nothing but the program
        tools/pictures.py [--program PATH] --compare [SCENE...]   photographs the page with the distribution's chromium
+       tools/pictures.py [--program PATH] --pages                the report, and the page of `./test web`
 """
 import argparse
 import json
 import pathlib
+import shutil
 import subprocess
 import tempfile
 
@@ -65,14 +67,28 @@ def draw_exports(program: str, images: pathlib.Path) -> None:
                            stdout=subprocess.DEVNULL)
 
 
+def draw_pages(program: str, images: pathlib.Path) -> None:
+    """The report of a run, and the page in the browser as its tests left it."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "run"
+        subprocess.run([program, "run", "moebius", "--out", str(out), "--formats", "html", "--quiet"], check=True)
+        page = out / "report.html"
+        shoot(page, page.read_text(encoding="utf-8"), images / "report.png", (1280, 820))
+    shutil.copy(ROOT / "build/web/shots/torsion.png", images / "browser.png")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "build/release/wunderlich"))
     parser.add_argument("--compare", action="store_true", help="draw the comparisons of models instead")
+    parser.add_argument("--pages", action="store_true", help="draw the pages instead")
     parser.add_argument("scenes", nargs="*")
     options = parser.parse_args()
     images = ROOT / "docs/images"
     images.mkdir(exist_ok=True)
+    if options.pages:
+        draw_pages(options.program, images)
+        return
     if options.compare:
         for scene in options.scenes or COMPARED:
             with tempfile.TemporaryDirectory() as folder:

@@ -49,6 +49,7 @@ libjs-katex         libjs-katex         docs,test
 python3-pymdownx    python3-pymdownx    docs,test
 mkdocs-material     mkdocs-material     docs,test
 blender             blender             nightly
+linkchecker         linkchecker         nightly
 libc++-dev          libc++-dev          nightly
 libc++abi-dev       libc++abi-dev       nightly
 gcovr               gcovr               nightly

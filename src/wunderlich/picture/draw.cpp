@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cassert>
+#include <future>
 #include <thread>
 
 #include "wunderlich/picture/band.hpp"
@@ -39,10 +40,10 @@ Image draw(const Subject& subject, const Style& style, const Plan& plan, std::si
       draw_band(sheet, row, std::min(rows, style.height - row), image);
     }
   };
-  std::vector<std::thread> helpers;
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) helpers.emplace_back(work);
+  std::vector<std::future<void>> helpers;  // which hand on what is thrown, as when memory ends
+  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) helpers.push_back(std::async(std::launch::async, work));
   work();
-  for (std::thread& helper : helpers) helper.join();
+  for (std::future<void>& helper : helpers) helper.get();
   return image;
 }
 
