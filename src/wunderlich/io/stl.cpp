@@ -30,7 +30,8 @@ std::string stl(const std::vector<Solid>& solids, const std::string& name) {
     throw InputError(fmt::format("{} triangles are more than STL can hold; lower output.subdivision", count));
   }
   std::string out = "binary, mm, z up: " + name;  // must not begin with "solid": that would mean text
-  out.resize(comment_size, ' ');
+  out.resize(comment_size - 1, ' ');
+  out += '\0';  // for readers that take it for a C string
   out.reserve(comment_size + 4 + triangle_size * count);
   append(out, static_cast<std::uint32_t>(count));
   for (const Solid& solid : solids) {

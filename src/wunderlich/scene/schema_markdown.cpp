@@ -43,7 +43,7 @@ clamps:
 const char* const limits = R"(
 ## What is refused
 
-Beside values outside their range_cell:
+Beside values outside their range:
 
 - two supports that hold the same node (a clamped segment holds both of its nodes; an end clamp holds the end node);
 - supports that at any keyframe stand farther apart than the strip between them is long;
@@ -127,7 +127,7 @@ std::string row(const Key& key) {
                      range_cell(key), fallback, key.doc);
 }
 
-const char* const header = "\n| key | type | unit | range_cell | default | meaning |\n|---|---|---|---|---|---|\n";
+const char* const header = "\n| key | type | unit | range | default | meaning |\n|---|---|---|---|---|---|\n";
 
 }  // namespace
 
