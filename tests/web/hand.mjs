@@ -22,8 +22,8 @@ export async function mouse(page) {
 /** By the wheel, and sideways with Shift: a right-handed turn gives positive torsion. */
 export async function twist(page) {
   const turn = async (name, key, forth, back) => {
-    await choose(page, 'cantilever');
-    const [x, y] = await place(page, 50);
+    await choose(page, 'buckled-strip');
+    const [x, y] = await place(page, (await nodes(page)).length / 3 - 1);
     await page.mouse.move(x, y);
     await page.mouse.down();
     if (key) await page.keyboard.down(key);

@@ -11,7 +11,7 @@ import type { SceneInfo, Solid, View } from './simulator';
 
 const tooFar = 1.5, tooNear = 0.6;   // of the radius that the view was made for: the view follows
 const seen = 2e-4;                   // of that radius: less is no motion; a tenth of a pixel
-const skyLight = 2.2;                // about as light as the room
+const skyLight = 5.5;                // about as light as the room
 
 export class Stage {
   readonly canvas: HTMLCanvasElement;
@@ -27,7 +27,7 @@ export class Stage {
   private readonly fine = ribbonMaterial();
   private readonly matt = mattMaterial(this.fine.back);
   private readonly room: THREE.Texture;
-  private readonly sky = new THREE.HemisphereLight(0xffffff, 0x9a8f80, skyLight);   // in place of the room
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xb8ada0, skyLight);   // in place of the room
   private readonly lamp: THREE.DirectionalLight;
   readonly controls;
   private ribbon: Ribbon | null = null;
@@ -49,6 +49,7 @@ export class Stage {
     this.room = this.scene.environment!;
     this.lamp = this.scene.getObjectByProperty('isDirectionalLight', true) as THREE.DirectionalLight;
     this.camera.up.set(0, 0, 1);
+    this.sky.position.set(0, 0, 1);
     this.controls = createControls(this.camera, this.canvas);
     this.controls.addEventListener('change', () => { this.changed = true; });
     this.controls.addEventListener('start', () => { this.untouched = false; });
