@@ -365,7 +365,7 @@ bool Session::step(double seconds) {
   twisted_.reset();
   wanted_.twist = now_.twist;
   const std::string failure = failure_;
-  remake([&](scene::Scene& scene, std::vector<geometry::State>&) {
+  remake([&](scene::Scene& scene, std::vector<geometry::State>& shapes) {
     each_strip(scene, [&](scene::Scene& strip) {
       strip.surroundings.grips.clear();
       for (Support& support : strip.surroundings.supports) {
@@ -373,6 +373,10 @@ bool Session::step(double seconds) {
         support.motion.keys = {{0, constraint::pose_at(support.motion, 0), 0}};
       }
     });
+    // What a hand has torn about stands still; else the next steps fail as well.
+    for (geometry::State& shape : shapes) {
+      if (pulled) std::fill(shape.r_dot.begin(), shape.r_dot.end(), Vec3::Zero());
+    }
   });
   failure_ = failure;
   return false;

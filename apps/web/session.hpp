@@ -44,8 +44,8 @@ class Session {
   bool on_path() const { return !motion_.has_value(); }
   /// Follows the path for about so many milliseconds. False when it is over.
   bool follow(double milliseconds);
-  /// One step in time [s]. False if it failed: the strip stays in the last good state, and what held it lets go.
-  /// Where it succeeded `failure` is what could not be done beside it, if there was anything.
+  /// One step in time [s]. False if it failed: the strip stays in the last good state, what held it lets go, and what
+  /// was pulled stands still. Where it succeeded `failure` is what could not be done beside it, if there was anything.
   bool step(double seconds);
 
   double time() const;                                     ///< of the motion [s]

@@ -1,78 +1,17 @@
 // The page in a real browser: loads, is pulled by mouse, touch and keyboard, shares, saves, and answers bad scenes.
 // usage: node browser.mjs NODE_MODULES [FOLDER for screenshots]
-import { spawn } from 'node:child_process';
-import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
 import { deflateRawSync, gzipSync } from 'node:zlib';
-import { root } from './node_simulator.mjs';
-
-const { chromium } = createRequire(path.resolve(process.argv[2], 'x.js'))('playwright-core');
-const shots = path.resolve(process.argv[3] ?? path.join(root, 'build', 'web', 'shots'));
-const folder = path.join(root, 'build', 'web', 'page');
-mkdirSync(shots, { recursive: true });
-
-let failed = 0;
-const check = (ok, text) => {
-  console.log(`${ok ? 'ok    ' : 'FAILED'} ${text}`);
-  if (!ok) ++failed;
-};
-
-async function serve() {
-  const server = spawn('python3', [path.join(root, 'web', 'app', 'serve.py'), folder, '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  const address = await new Promise((resolve) => server.stdout.once('data', (line) => resolve(String(line).trim())));
-  return { server, address };
-}
+import {
+  bad, check, choose, chromium, download, failures, folder, moved, nodes, numbers, open, pixels, rewrite, serve, setRange, settings,
+  shot,
+} from './driver.mjs';
+import { keyboard, mouse, refusals, restart, touch, twist } from './hand.mjs';
+import { asGiven, colours, memory, plots, reachable, spoken } from './looks.mjs';
 
 const flags = ['--headless', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--no-first-run'];
-
-/** A page whose errors are counted. */
-async function open(context, address) {
-  const page = await context.newPage();
-  page.on('console', (message) => {
-    if (message.type() === 'error') check(false, `the console says: ${message.text()}`);
-  });
-  page.on('pageerror', (error) => check(false, `an error: ${error.message}`));
-  await page.goto(address);
-  await page.waitForFunction(() => document.documentElement.dataset.ready, undefined, { timeout: 60000 });
-  return page;
-}
-
-const choose = async (page, scene) => {
-  await page.selectOption('#scene', scene);
-  await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 120000 });
-};
-const nodes = (page) => page.evaluate(() => window.wunderlich.nodes());
-const far = (a, b) => Math.hypot(...[0, 1, 2].map((c) => a[a.length - 3 + c] - b[b.length - 3 + c]));
-const bad = (page) => page.evaluate(() => document.getElementById('status').classList.contains('bad'));
-
-/** Where a node is on the screen. */
-async function place(page, node) {
-  await page.locator('#view').scrollIntoViewIfNeeded();
-  return page.evaluate((n) => {
-    const box = document.querySelector('#view canvas').getBoundingClientRect();
-    const [x, y] = window.wunderlich.place(0, n);
-    return [box.left + x, box.top + y];
-  }, node);
-}
-const moved = (page, before, least) => page.waitForFunction(([start, far]) => {
-  const now = window.wunderlich.nodes();
-  return Math.hypot(...[0, 1, 2].map((c) => now[now.length - 3 + c] - start[start.length - 3 + c])) > far;
-}, [before, least], { timeout: 60000 });
-
-/** The share of the picture's pixels that are as red as the ribbon. */
-async function drawn(page, png) {
-  return page.evaluate(async (data) => {
-    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
-    const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
-    context.drawImage(image, 0, 0);
-    const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
-    const red = pixels.filter((p) => (p & 255) > ((p >> 16) & 255) + 50).length;
-    return red / pixels.length;
-  }, png.toString('base64'));
-}
 
 async function sizes() {
   const all = readdirSync(folder).map((name) => [name, gzipSync(readFileSync(path.join(folder, name)), { level: 9 }).length]);
@@ -80,54 +19,9 @@ async function sizes() {
   check(whole < 1e6, `${(whole / 1e6).toFixed(3)} MB gzipped: ${all.map(([name, size]) => `${name} ${size}`).join(', ')}`);
 }
 
-async function mouse(page) {
-  await choose(page, 'cantilever');
-  const before = await nodes(page), [x, y] = await place(page, 50);
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  check(await page.evaluate(() => window.wunderlich.holds()), 'the mouse takes the free end');
-  await page.mouse.move(x - 60, y - 90, { steps: 6 });
-  await moved(page, before, 0.1);
-  check(true, 'the end follows the mouse');
-  await page.mouse.wheel(0, 300);
-  await page.mouse.up();
-  check(!(await page.evaluate(() => window.wunderlich.holds())), 'and is let go');
-  const now = await nodes(page), error = (await page.evaluate(() => window.wunderlich.numbers())).area_error;
-  check(Math.hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]) < 1e-9, 'the clamped end has stayed');
-  check(error < 1e-9, `the surface is still that of the flat strip: area error ${error}`);
-  await page.screenshot({ path: path.join(shots, 'cantilever.png') });
-}
-
-async function keyboard(page) {
-  await choose(page, 'cantilever');
-  const before = await nodes(page);
-  await page.focus('#view');
-  await page.keyboard.press('e');
-  check(await page.evaluate(() => window.wunderlich.holds()), 'E takes the far end');
-  for (let k = 0; k < 8; ++k) await page.keyboard.press('ArrowUp');
-  await moved(page, before, 0.03);
-  check(true, 'arrow keys pull it');
-  await page.keyboard.press('Escape');
-  check(!(await page.evaluate(() => window.wunderlich.holds())), 'Escape lets go');
-  await page.keyboard.press(' ');
-  check(!(await page.evaluate(() => window.wunderlich.playing())), 'Space pauses');
-  const paused = await page.evaluate(() => window.wunderlich.numbers().time);
-  await page.keyboard.press('s');
-  await page.waitForFunction((t) => window.wunderlich.numbers().time > t, paused, { timeout: 20000 });
-  check(!(await page.evaluate(() => window.wunderlich.playing())), 'S is one step');
-  await page.keyboard.press(' ');
-}
-
-async function setRange(page, id, value) {
-  await page.locator(id).evaluate((input, to) => {
-    input.value = to;
-    input.dispatchEvent(new Event('input', { bubbles: true }));
-  }, String(value));
-}
-
 async function sliders(page) {
   await choose(page, 'buckled-strip');
-  const before = (await page.evaluate(() => window.wunderlich.numbers())).elastic;
+  const before = (await numbers(page)).elastic;
   await setRange(page, '#set-twist', 90);
   await page.waitForFunction((e) => window.wunderlich.numbers().elastic > 1.02 * e, before, { timeout: 60000 });
   check(!(await bad(page)), 'twist turns the far end');
@@ -136,7 +30,7 @@ async function sliders(page) {
   await setRange(page, '#set-gravity', 0);
   await moved(page, nodesBefore, 0.05);
   check(true, 'without gravity a cantilever rises');
-  const { width } = await page.evaluate(() => window.wunderlich.settings());
+  const { width } = await settings(page);
   await page.focus('#set-width');
   for (let k = 0; k < 20; ++k) await page.keyboard.press('ArrowRight');
   await page.waitForFunction((w) => window.wunderlich.settings().width > 1.02 * w, width);
@@ -163,11 +57,11 @@ async function shareLink(page, context) {
   check(link.length < 2000, `a link of ${link.length} characters`);
   const other = await open(context, link);
   await other.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
-  const { stiffness } = await other.evaluate(() => window.wunderlich.settings());
+  const { stiffness } = await settings(other);
   check(Math.abs(stiffness - 2) < 0.02, `it brings the scene with its stiffness: ${stiffness}`);
   check(await other.locator('input[value=tau]').isChecked(), 'and the colours');
   check((await other.getAttribute('#rulings', 'aria-pressed')) === 'true', 'and the rulings');
-  await other.screenshot({ path: path.join(shots, 'shared.png') });
+  await other.screenshot({ path: shot('shared') });
   await other.close();
   const broken = await open(context, `${link.split('#')[0]}#s=AAAA`);
   check((await broken.textContent('#message')).length > 0 && (await nodes(broken)).length > 0, 'a broken link is said to be one');
@@ -197,11 +91,6 @@ async function strangeLinks(page, context) {
   await unread.close();
 }
 
-async function download(page, button) {
-  const [file] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
-  return [file.suggestedFilename(), readFileSync(await file.path())];
-}
-
 async function downloads(page) {
   const [glbName, glb] = await download(page, '#save-glb');
   check(glbName === 'cantilever.glb' && glb.toString('latin1', 0, 4) === 'glTF' && glb.readUInt32LE(8) === glb.length, `${glbName}, ${glb.length} bytes`);
@@ -217,7 +106,7 @@ async function slidersKept(page) {
     ['paper-chain', 'length', 1.1, 'length', 0.33, 3], ['twist-and-shorten', 'stiffness', 2, 'young_modulus', 2e9, 1],
   ]) {
     await choose(page, scene);
-    const given = (await page.evaluate(() => window.wunderlich.settings()))[slider];
+    const given = (await settings(page))[slider];
     await setRange(page, `#set-${slider}`, slider === 'length' ? factor * given : Math.log(factor * given));
     const [name, bytes] = await download(page, '#save-scene');
     const found = [...bytes.toString().matchAll(new RegExp(`\\b${key}"?: ([^\\s,}]+)`, 'g'))].map((m) => Number(m[1]));
@@ -234,7 +123,7 @@ async function badScene(page) {
   check(/:\d+:\d+: .*segmens/.test(message) && /segments/.test(message), `the reader's words: ${message}`);
   const selected = await page.locator('#text').evaluate((area) => area.value.slice(area.selectionStart, area.selectionEnd));
   check(selected.startsWith('segmens'), `and its place is marked: ${selected}`);
-  const { time } = await page.evaluate(() => window.wunderlich.numbers());
+  const { time } = await numbers(page);
   await page.waitForFunction((t) => window.wunderlich.numbers().time > t, time);
   check(true, 'the scene before goes on');
   await page.fill('#text', good.replace(/segments: \d+/, 'segments: 30'));
@@ -256,45 +145,29 @@ async function badFrame(page) {
   await page.waitForFunction(() => !window.wunderlich.playing(), undefined, { timeout: 20000 });
   const said = await page.textContent('#status');
   check((await bad(page)) && /for a test/.test(said), `a frame that fails pauses and says why: ${said}`);
-  const { time } = await page.evaluate(() => window.wunderlich.numbers());
+  const { time } = await numbers(page);
   await page.click('#play');
   await page.waitForFunction((t) => window.wunderlich.numbers().time > t, time, { timeout: 20000 });
   check(true, 'and Play goes on');
 }
 
-async function touch(browser, address) {
-  const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
-  const page = await open(context, address);
-  await choose(page, 'cantilever');
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  check(wide <= 390, `nothing sticks out at 390 pixels: ${wide}`);
-  const before = await nodes(page), [x, y] = await place(page, 50);
-  const client = await context.newCDPSession(page);
-  const send = (type, points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
-  await send('touchStart', [[x, y]]);
-  for (let k = 1; k <= 8; ++k) await send('touchMove', [[x - 6 * k, y - 10 * k]]);
-  await moved(page, before, 0.1);
-  check(await page.evaluate(() => window.wunderlich.holds()), 'a finger pulls the end');
-  await send('touchStart', [[x - 48, y - 80], [x + 40, y - 80]]);
-  await send('touchMove', [[x - 48, y - 80], [x + 40, y - 20]]);
-  await send('touchEnd', []);
-  await page.waitForFunction(() => !window.wunderlich.holds());
-  check(true, 'and lets go');
-  await page.screenshot({ path: path.join(shots, 'phone.png'), fullPage: true });
-  await context.close();
-}
-
+/** Times of frames, printed. The picture is drawn in software here: by the finest look, and by the one that is reached. */
 async function times(page) {
-  console.log('milliseconds a frame of 1/60 s: segments, simulation, drawing (in software)');
+  console.log('milliseconds a frame of 1/60 s: segments, look, simulation, the page\'s own work for the picture, until it is drawn; frames a second');
   await choose(page, 'cantilever');
   for (const segments of [50, 100, 200]) {
-    await page.fill('#text', (await page.inputValue('#text')).replace(/segments: \d+/, `segments: ${segments}`));
-    await page.click('#run');
-    await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
-    await page.evaluate(() => window.wunderlich.measure(40));   // what runs often is compiled a second time
-    const { simulate, draw } = await page.evaluate(() => window.wunderlich.measure(40));
-    console.log(`${segments}  ${simulate.toFixed(2)}  ${draw.toFixed(1)}`);
-    if (segments === 100) check(simulate < 1000 / 60, 'the simulation of 100 segments leaves time to draw');
+    for (const look of [0, null]) {
+      await rewrite(page, /segments: \d+/, `segments: ${segments}`);
+      await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
+      await page.evaluate((level) => { scrollTo(0, 0); window.wunderlich.fix(level); }, look);
+      const frames = look === 0 ? 8 : 40;
+      await page.evaluate((n) => window.wunderlich.measure(n), frames);   // what runs often is compiled a second time
+      const { simulate, script, draw } = await page.evaluate((n) => window.wunderlich.measure(n), frames);
+      const rate = await page.evaluate(() => window.wunderlich.rate(4));
+      const name = look === 0 ? 'finest' : `reached (${await page.evaluate(() => window.wunderlich.level())})`;
+      console.log(`${segments}  ${name}  ${simulate.toFixed(2)}  ${script.toFixed(2)}  ${draw.toFixed(1)}  ${rate.toFixed(1)}`);
+      if (segments === 100) check(simulate + script < 1000 / 60, 'the simulation of 100 segments leaves time to draw');
+    }
   }
 }
 
@@ -313,11 +186,14 @@ try {
   check(Math.min(...ready) <= Number(process.env.READY_WITHIN ?? Infinity), `ready after ${ready.join(', ')} ms`);
   await page.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
   await page.waitForTimeout(300);
-  const png = await page.locator('#view').screenshot({ path: path.join(shots, 'moebius.png') });
-  const share = await drawn(page, png);
+  const png = await page.locator('#view').screenshot({ path: shot('moebius') });
+  const share = await pixels(page, png);
   check(share > 0.02, `the ribbon covers ${(100 * share).toFixed(1)} % of its picture`);
-  await page.screenshot({ path: path.join(shots, 'desktop.png'), fullPage: true });
-  const parts = { mouse, keyboard, sliders, shareLink, strangeLinks, downloads, slidersKept, badScene, badFrame, times };
+  await page.screenshot({ path: shot('desktop'), fullPage: true });
+  const parts = {
+    mouse, twist, keyboard, restart, refusals, sliders, asGiven, colours, plots, shareLink, strangeLinks, downloads, slidersKept, badScene,
+    badFrame, memory, spoken, reachable, times,
+  };
   const wanted = process.env.ONLY?.split(',') ?? Object.keys(parts);
   for (const name of wanted) {
     if (!parts[name]) continue;
@@ -330,4 +206,4 @@ try {
   await browser.close();
   server.kill();
 }
-process.exit(failed ? 1 : 0);
+process.exit(failures() ? 1 : 0);

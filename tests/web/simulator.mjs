@@ -1,7 +1,7 @@
 // The page's simulator under node: equilibria beside the program's, energies agree to 1e-9; a bad scene is answered in the
 // same words; every scene runs; hands that pull too fast do no harm.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { root, runNative, startSimulator } from './node_simulator.mjs';
@@ -44,6 +44,8 @@ try {
   execFileSync(process.env.WUNDERLICH_PROGRAM ?? path.join(root, 'build/release/wunderlich'), ['check', 'broken.yaml'], { cwd: folder, stdio: 'pipe' });
 } catch (error) {
   native = error.stderr.toString();
+} finally {
+  rmSync(folder, { recursive: true });
 }
 check(message !== '' && native.includes(message), `a misspelt key: ${message}`);
 check(simulator.step(1e-3) === 'done', 'the scene before goes on');

@@ -10,10 +10,10 @@ const [modules, wasm, output] = process.argv.slice(2).map((argument) => path.res
 const esbuild = createRequire(path.join(modules, 'x.js'))('esbuild');
 
 await mkdir(output, { recursive: true });
-// For node as well: tests and benchmarks call the simulator as the page does.
+// For node as well: tests and benchmarks call these as the page does.
 await esbuild.build({
-  entryPoints: [path.join(here, 'src', 'simulator.ts')], format: 'esm', target: 'es2022',
-  outfile: path.join(output, '..', 'simulator.mjs'),
+  entryPoints: ['simulator', 'quality'].map((name) => path.join(here, 'src', `${name}.ts`)), format: 'esm', target: 'es2022',
+  outdir: path.join(output, '..'), outExtension: { '.js': '.mjs' },
 });
 await esbuild.build({
   entryPoints: [{ in: path.join(here, 'src', 'main.ts'), out: 'app' }, { in: path.join(here, 'src', 'style.css'), out: 'app' }],

@@ -20,27 +20,42 @@ export function boundary(triangles: Uint32Array, pointU: ArrayLike<number> | nul
   return Uint32Array.from([...seen.values()].filter((edge) => edge !== null).flat());
 }
 
+export type Paper = THREE.MeshPhysicalMaterial | THREE.MeshLambertMaterial;
+
+const offset = { polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 2 };   // lines on it are seen
+
 /** Paper-like; the back of a two-sided strip has its own colour. */
 export function ribbonMaterial(): { material: THREE.MeshPhysicalMaterial; back: { value: THREE.Color } } {
   const material = new THREE.MeshPhysicalMaterial({
     side: THREE.DoubleSide, vertexColors: true, roughness: 0.58, metalness: 0, sheen: 0.2, sheenRoughness: 0.5,
-    clearcoat: 0.08, clearcoatRoughness: 0.6, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 2,
+    clearcoat: 0.08, clearcoatRoughness: 0.6, ...offset,
   });
   const back = { value: new THREE.Color(paint.back) };
+  paintBack(material, back);
+  return { material, back };
+}
+
+/** The same without shine: for machines that draw slowly. */
+export function mattMaterial(back: { value: THREE.Color }): THREE.MeshLambertMaterial {
+  const material = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, vertexColors: true, ...offset });
+  paintBack(material, back);
+  return material;
+}
+
+function paintBack(material: Paper, back: { value: THREE.Color }) {
   // Where a strip shadows itself is looked up a little off its surface: on the side of the light, whichever side of the
   // strip that is. Else every second side lies in its own shadow, and a one-sided band changes its shade at the seam.
   const { x, y, z } = lightFrom;
-  const offset = THREE.ShaderChunk.shadowmap_vertex.replace(
+  const shadow = THREE.ShaderChunk.shadowmap_vertex.replace(
     'transformNormalByInverseViewMatrix( transformedNormal, viewMatrix );',
     `$& shadowWorldNormal *= sign(dot(shadowWorldNormal, vec3(${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)})));`);
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace('#include <shadowmap_vertex>', offset);
+    shader.vertexShader = shader.vertexShader.replace('#include <shadowmap_vertex>', shadow);
     shader.uniforms.backColour = back;
     shader.fragmentShader = 'uniform vec3 backColour;\n' + shader.fragmentShader.replace(
       '#include <color_fragment>',
       '#include <color_fragment>\nif (!gl_FrontFacing) diffuseColor.rgb = backColour * vColor.rgb;');
   };
-  return { material, back };
 }
 
 export function lines(count: number, colour: number, opacity: number): THREE.LineSegments {
@@ -64,8 +79,8 @@ function keyLight(): THREE.DirectionalLight {
   return light;
 }
 
-export function createRenderer(host: HTMLElement): THREE.WebGLRenderer {
-  const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: false });
+export function createRenderer(host: HTMLElement, antialias = true): THREE.WebGLRenderer {
+  const renderer = new THREE.WebGLRenderer({ antialias, alpha: true, preserveDrawingBuffer: false });
   renderer.toneMapping = THREE.NeutralToneMapping;
   renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -113,7 +128,8 @@ export function ribbonMesh(count: number, triangles: Uint32Array, material: THRE
 }
 
 /** A solid beside the ribbon, in its own frame; seen from outside only, so that a floor does not hide the ribbon. */
-export function solidMesh(points: Float32Array, normals: Float32Array, triangles: Uint32Array): THREE.Mesh {
+export function solidMesh(points: Float32Array, normals: Float32Array, triangles: Uint32Array):
+  THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial> {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(points, 3));
   geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));

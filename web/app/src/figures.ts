@@ -2,7 +2,7 @@
 import { fieldLabels, gradient } from '../../shared/colour';
 import { byId, element, number, quantity } from '../../shared/format';
 import type { Numbers } from './simulator';
-import type { Colour } from './stage';
+import type { Colour } from './ribbon';
 
 /** Running means of what a frame takes [ms]. */
 export class Meter {

@@ -47,6 +47,6 @@ function widened([low, high]: [number, number], values: number[]): [number, numb
   let least = 0, most = 0;
   for (const value of values) [least, most] = [Math.min(least, value), Math.max(most, value)];
   const margin = 0.08 * (most - least) || 1e-6;
-  const to = (now: number, wanted: number, beyond: boolean) => (beyond ? wanted : now + 0.04 * (wanted - now));
+  const to = (now: number, wanted: number, beyond: boolean) => (beyond ? wanted : now + 0.1 * (wanted - now));
   return [to(low, least - margin, least - margin < low), to(high, most + margin, most + margin > high)];
 }

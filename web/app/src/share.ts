@@ -1,5 +1,5 @@
 // A scene as a link: its text, compressed into the part of the address that no server sees.
-import { colours, type Colour } from './stage';
+import { colours, type Colour } from './ribbon';
 
 const longest = 1e6;   // bytes of what a link unpacks to
 

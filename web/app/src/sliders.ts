@@ -63,7 +63,7 @@ export class Sliders {
 
   private row(host: HTMLElement, name: string, label: string): { input: HTMLInputElement; output: HTMLElement } {
     const input = element('input', { type: 'range', id: `set-${name}` }) as HTMLInputElement;
-    const output = element('output', { for: input.id });
+    const output = element('span.value', { 'aria-hidden': 'true' });   // the slider itself says it
     host.append(element('label.slider', {}, element('span', {}, label), output, input));
     return { input, output };
   }

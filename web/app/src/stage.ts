@@ -1,34 +1,17 @@
 // The moving ribbon in 3D.
 import * as THREE from 'three';
-import { diverging } from '../../shared/colour';
 import { bestView, fitOf, frameAll, type Fit } from '../../shared/framing';
 import {
-  boundary, createControls, createFloor, createRenderer, createScene, lines, paint, ribbonMaterial, ribbonMesh, solidMesh,
-  turnCamera, zoomCamera,
+  createControls, createFloor, createRenderer, createScene, lines, mattMaterial, paint, ribbonMaterial, solidMesh, turnCamera,
+  zoomCamera,
 } from '../../shared/stage';
+import type { Look } from './quality';
+import { Ribbon, type Colour } from './ribbon';
 import type { SceneInfo, Solid, View } from './simulator';
 
-export const colours = ['none', 'kappa', 'tau', 'eta', 'energy'] as const;
-export type Colour = (typeof colours)[number];
-
 const tooFar = 1.5, tooNear = 0.6;   // of the radius that the view was made for: the view follows
-
-/** Light to dark, for what is never negative. */
-function sequential(t: number): [number, number, number] {
-  const s = Math.max(0, Math.min(1, t));
-  return diverging(0.02 + 0.98 * s);
-}
-
-/** A value that all but two per cent stay below. */
-function reach(values: Float32Array): number {
-  const sizes = Float32Array.from(values, Math.abs).sort();
-  return sizes[Math.floor(0.98 * (sizes.length - 1))] || sizes[sizes.length - 1] || 1;
-}
-
-interface Ribbon {
-  mesh: THREE.Mesh; rims: Uint32Array; rimLines: THREE.LineSegments; rulingLines: THREE.LineSegments;
-  nodeBefore: Uint32Array; share: Float32Array;   // for each point of the mesh
-}
+const seen = 2e-4;                   // of that radius: less is no motion; a tenth of a pixel
+const skyLight = 5.5;                // about as light as the room
 
 export class Stage {
   readonly canvas: HTMLCanvasElement;
@@ -41,7 +24,11 @@ export class Stage {
   private readonly floor = createFloor();
   private readonly marker: THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>;
   private readonly thread = lines(2, 0xb5451f, 0.9);   // from the hand to what it holds
-  private readonly material = ribbonMaterial();
+  private readonly fine = ribbonMaterial();
+  private readonly matt = mattMaterial(this.fine.back);
+  private readonly room: THREE.Texture;
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xb8ada0, skyLight);   // in place of the room
+  private readonly lamp: THREE.DirectionalLight;
   readonly controls;
   private ribbon: Ribbon | null = null;
   private fit: Fit = { centre: new THREE.Vector3(), radius: 1, floor: 0 };
@@ -51,52 +38,53 @@ export class Stage {
   private colour: Colour = 'none';
   private rulings = false;
   private oneSided = false;
-  private plain = false;
+  private look: Look | null = null;
+  private changed = true;   // since it was drawn
   private info: SceneInfo | null = null;
 
-  constructor(host: HTMLElement, onResize: () => void) {
-    this.renderer = createRenderer(host);
+  constructor(host: HTMLElement, private readonly antialias: boolean) {
+    this.renderer = createRenderer(host, antialias);
     this.canvas = this.renderer.domElement;
     this.scene = createScene(this.renderer);
+    this.room = this.scene.environment!;
+    this.lamp = this.scene.getObjectByProperty('isDirectionalLight', true) as THREE.DirectionalLight;
     this.camera.up.set(0, 0, 1);
+    this.sky.position.set(0, 0, 1);
     this.controls = createControls(this.camera, this.canvas);
+    this.controls.addEventListener('change', () => { this.changed = true; });
     this.controls.addEventListener('start', () => { this.untouched = false; });
     this.marker = new THREE.Mesh(new THREE.SphereGeometry(1, 24, 16), new THREE.MeshBasicMaterial({ color: 0xb5451f }));
     Object.assign(this.marker, { visible: false, renderOrder: 3 });
     this.thread.visible = false;
     this.body.add(this.solids, this.thread, this.marker);
-    this.scene.add(this.body, this.floor);
+    this.scene.add(this.body, this.floor, this.sky);
     new ResizeObserver(() => {
       const { clientWidth, clientHeight } = host;
       if (!clientWidth || !clientHeight) return;
       this.camera.aspect = clientWidth / clientHeight;
       this.camera.updateProjectionMatrix();
       this.renderer.setSize(clientWidth, clientHeight);
+      this.changed = true;
       if (this.untouched) this.resetView();
-      onResize();
     }).observe(host);
   }
 
   /** Another scene: its ribbon's mesh, its solids, and a view of both. */
   load(info: SceneInfo, view: View, solids: Solid[], nodesOfStrips: number[]) {
     this.info = info;
-    if (this.ribbon) {
-      for (const object of [this.ribbon.mesh, this.ribbon.rimLines, this.ribbon.rulingLines]) {
-        this.body.remove(object);
-        object.geometry.dispose();
-      }
+    this.ribbon?.dispose();
+    for (const solid of [...this.solids.children] as ReturnType<typeof solidMesh>[]) {
+      solid.removeFromParent();
+      solid.geometry.dispose();
+      solid.material.dispose();
     }
-    const count = view.points.length / 3, triangles = view.triangles.slice();
     const loop = info.strips.length === 1 && info.strips[0].loop;
-    const mesh = ribbonMesh(count, triangles, this.material.material);
-    const rims = boundary(triangles, view.u.slice(), loop);
-    const rimLines = lines(rims.length, 0x2a1a12, 0.55), rulingLines = lines(view.rulings.length / 3, 0x2a1a12, 0.5);
-    rulingLines.visible = this.rulings;
-    this.ribbon = { mesh, rims, rimLines, rulingLines, ...weights(view, nodesOfStrips) };
-    this.body.add(mesh, rimLines, rulingLines);
     this.oneSided = loop && Math.abs(info.strips[0].half_twists) % 2 === 1;
-    this.solids.clear();
+    this.ribbon = new Ribbon(view, loop, nodesOfStrips, this.look?.fine === false ? this.matt : this.fine.material);
+    this.ribbon.rulings.visible = this.rulings;
+    this.body.add(this.ribbon.group);
     for (const solid of solids) this.solids.add(solidMesh(solid.points, solid.normals, solid.triangles));
+    this.changed = true;
     this.show(view);
     this.lookAt(view, true);
   }
@@ -130,63 +118,48 @@ export class Stage {
     this.body.scale.setScalar(1 / radius);
     this.body.position.copy(centre).multiplyScalar(-1 / radius);
     this.floor.position.z = (floor - centre.z) / radius - 0.12;
-    this.floor.visible = !this.plain && this.solids.children.length === 0;
+    this.floor.visible = this.look?.shadows !== false && this.solids.children.length === 0;
     this.body.updateMatrixWorld(true);
+    this.changed = true;
   }
 
+  /** Takes over where everything is, if anything has moved so far that it is seen. */
   show(view: View) {
     const { ribbon } = this;
     if (!ribbon) return;
-    const attribute = (object: THREE.Mesh | THREE.LineSegments, name: string, values: Float32Array) => {
-      const target = object.geometry.getAttribute(name) as THREE.BufferAttribute;
-      (target.array as Float32Array).set(values);
-      target.needsUpdate = true;
-    };
-    attribute(ribbon.mesh, 'position', view.points);
-    attribute(ribbon.mesh, 'normal', view.normals);
-    attribute(ribbon.rulingLines, 'position', view.rulings);
-    const rim = ribbon.rimLines.geometry.getAttribute('position') as THREE.BufferAttribute;
-    const out = rim.array as Float32Array;
-    ribbon.rims.forEach((point, i) => {
-      for (let c = 0; c < 3; ++c) out[3 * i + c] = view.points[3 * point + c];
-    });
-    rim.needsUpdate = true;
+    this.changed ||= ribbon.moved(view, seen * this.fit.radius) || this.solidsMoved(view);
+    if (!this.changed) return;
+    ribbon.show(view);
     this.solids.children.forEach((solid, i) => {
       solid.position.fromArray(view.poses, 7 * i);
       solid.quaternion.fromArray(view.poses, 7 * i + 3);
     });
-    this.paintPoints(view);
+    this.paint(view);
+  }
+  private solidsMoved({ poses }: View): boolean {
+    const shown = this.solids.children.flatMap(({ position, quaternion }) => [...position.toArray(), ...quaternion.toArray()]);
+    return shown.some((value, i) => Math.abs(value - poses[i]) > seen * this.fit.radius);
+  }
+  private paint(view: View) {
+    const { colour, ribbon } = this, white = colour !== 'none';
+    for (const material of [this.fine.material, this.matt]) material.color.set(white ? 0xffffff : paint.front);
+    this.fine.back.value.set(white ? 0xffffff : this.oneSided ? paint.front : paint.back);
+    if (colour === 'none') ribbon!.whiten();
+    else this.range = ribbon!.paint(view.fields[colour], colour !== 'energy', this.range);
   }
 
-  private paintPoints(view: View) {
-    const { mesh, nodeBefore, share } = this.ribbon!;
-    const attribute = mesh.geometry.getAttribute('color') as THREE.BufferAttribute;
-    const out = attribute.array as Float32Array, { colour } = this;
-    this.material.material.color.set(colour === 'none' ? paint.front : 0xffffff);
-    this.material.back.value.set(colour !== 'none' ? 0xffffff : this.oneSided ? paint.front : paint.back);
-    if (colour === 'none') {
-      if (out[0] !== 1 || out[out.length - 1] !== 1) { out.fill(1); attribute.needsUpdate = true; }
-      return;
-    }
-    const field = view.fields[colour], map = colour === 'energy' ? sequential : diverging;
-    const largest = reach(field);
-    this.range = largest > this.range ? largest : this.range + 0.05 * (largest - this.range);
-    const rgb = new THREE.Color();
-    const painted = Array.from(field, (value) => rgb.setRGB(...map(value / this.range), THREE.SRGBColorSpace).toArray());
-    for (let i = 0; i < nodeBefore.length; ++i) {
-      const a = painted[nodeBefore[i]], b = painted[nodeBefore[i] + 1] ?? a;
-      for (let c = 0; c < 3; ++c) out[3 * i + c] = a[c] + (b[c] - a[c]) * share[i];
-    }
-    attribute.needsUpdate = true;
+  setColour(colour: Colour, view: View) {
+    [this.colour, this.range, this.changed] = [colour, 1e-9, true];
+    this.show(view);
   }
-
-  setColour(colour: Colour, view: View) { this.colour = colour; this.range = 1e-9; this.show(view); }
   setRulings(visible: boolean) {
-    this.rulings = visible;
-    if (this.ribbon) this.ribbon.rulingLines.visible = visible;
+    [this.rulings, this.changed] = [visible, true];
+    if (this.ribbon) this.ribbon.rulings.visible = visible;
   }
   setTheme(dark: boolean) {
+    this.changed = true;
     this.scene.environmentIntensity = dark ? 0.55 : 0.75;
+    this.sky.intensity = skyLight * this.scene.environmentIntensity;
     this.floor.material.opacity = dark ? 0.45 : 0.16;
   }
 
@@ -217,12 +190,7 @@ export class Stage {
   }
   /** The node whose part of the ribbon is at a place in the picture. */
   hit(x: number, y: number): number | null {
-    if (!this.ribbon) return null;
-    const { mesh, nodeBefore, share } = this.ribbon;
-    mesh.geometry.computeBoundingSphere();
-    const [found] = this.sight(x, y).intersectObject(mesh);
-    if (!found?.face) return null;
-    return nodeBefore[found.face.a] + Math.round(share[found.face.a]);
+    return this.ribbon?.hit(this.sight(x, y)) ?? null;
   }
   /** Where the line of sight through a place in the picture meets the plane through a point, parallel to the picture. */
   unproject(x: number, y: number, through: THREE.Vector3): THREE.Vector3 {
@@ -240,25 +208,30 @@ export class Stage {
 
   /** Marks a node, and the hand that pulls it. */
   mark(node: THREE.Vector3 | null, hand: THREE.Vector3 | null) {
-    this.marker.visible = node !== null;
-    this.thread.visible = node !== null && hand !== null;
+    const ends = this.thread.geometry.getAttribute('position') as THREE.BufferAttribute;
+    const near = (i: number, place: THREE.Vector3) =>
+      place.distanceTo(new THREE.Vector3().fromBufferAttribute(ends, i)) <= seen * this.fit.radius;
+    if (this.marker.visible === (node !== null) && (!node || (near(0, node) && near(1, hand ?? node)))) return;
+    this.changed = true;
+    this.marker.visible = this.thread.visible = node !== null;
     if (!node) return;
     this.marker.position.copy(node);
     this.marker.scale.setScalar(0.022 * this.fit.radius);
-    if (!hand) return;
-    const ends = this.thread.geometry.getAttribute('position') as THREE.BufferAttribute;
-    ends.setXYZ(0, node.x, node.y, node.z);
-    ends.setXYZ(1, hand.x, hand.y, hand.z);
+    [node, hand ?? node].forEach(({ x, y, z }, i) => ends.setXYZ(i, x, y, z));
     ends.needsUpdate = true;
   }
 
-  /** Without shadows and shine, for machines that draw slowly. */
-  plainly() {
-    this.renderer.shadowMap.enabled = false;
-    this.renderer.setPixelRatio(1);
-    Object.assign(this.material.material, { sheen: 0, clearcoat: 0, needsUpdate: true });
-    this.floor.visible = false;
-    this.plain = true;
+  /** How finely it is drawn from now on. */
+  setLook(look: Look) {
+    if (this.look === look) return;
+    this.look = look;
+    // Where edges are not smoothed as they are drawn, more pixels do.
+    this.renderer.setPixelRatio(this.antialias ? Math.min(look.ratio, window.devicePixelRatio) : look.ratio);
+    this.lamp.castShadow = look.shadows;
+    this.scene.environment = look.fine ? this.room : null;
+    this.sky.visible = !look.fine;
+    if (this.ribbon) this.ribbon.mesh.material = look.fine ? this.fine.material : this.matt;
+    this.place();
   }
 
   /** Waits until what was asked for is drawn. */
@@ -267,26 +240,22 @@ export class Stage {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  draw() {
+  /** Is there anything to be drawn? */
+  moves(): boolean {
     this.controls.update();
+    return this.changed;
+  }
+  /** Draws if there is; was there? */
+  draw(): boolean {
+    if (!this.changed) return false;
     this.renderer.render(this.scene, this.camera);
+    this.changed = false;
+    return true;
   }
-}
-
-/** For each point of the mesh the node before it and the share of the next one; strips follow one another in both. */
-function weights(view: View, nodesOfStrips: number[]): { nodeBefore: Uint32Array; share: Float32Array } {
-  const nodeBefore = new Uint32Array(view.u.length), share = new Float32Array(view.u.length);
-  const u = view.fields.u;
-  let first = 0, strip = 0, k = 0;
-  for (let i = 0; i < view.u.length; ++i) {
-    if (i > 0 && view.u[i] < view.u[i - 1] - 1e-12 && strip + 1 < nodesOfStrips.length) {   // the next strip begins
-      first += nodesOfStrips[strip++];
-      k = first;
-    }
-    const last = first + nodesOfStrips[strip] - 2;
-    while (k < last && u[k + 1] <= view.u[i]) ++k;
-    nodeBefore[i] = k;
-    share[i] = Math.max(0, Math.min(1, (view.u[i] - u[k]) / (u[k + 1] - u[k])));
+  get drawn(): number { return this.renderer.info.render.frame; }   // frames so far
+  /** What the graphics processor holds. */
+  memory(): { geometries: number; textures: number; programs: number } {
+    const { memory, programs } = this.renderer.info;
+    return { geometries: memory.geometries, textures: memory.textures, programs: programs?.length ?? 0 };
   }
-  return { nodeBefore, share };
 }

@@ -1,0 +1,191 @@
+#include "session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "wunderlich/scene/read.hpp"
+
+namespace wunderlich::web {
+namespace {
+
+constexpr double kLong = 1e9;  // milliseconds
+
+/// A cantilever of 20 segments, clamped level at its start; `gravity` along z.
+scene::Scene cantilever(double gravity = -5) {
+  return scene::read_scene_text(
+      "{ribbon: {length: 1, width: 0.1, segments: 20}, clamps: [{at: start}], solver: {method: equilibrium}, gravity: "
+      "[0, 0, " +
+          std::to_string(gravity) + "]}",
+      "cantilever");
+}
+
+/// At rest, from where its motion begins.
+Session at_rest() {
+  Session session(cantilever());
+  EXPECT_FALSE(session.follow(kLong));
+  return session;
+}
+
+/// So many of the longest steps; all must succeed.
+void go(Session& session, int steps) {
+  for (int i = 0; i < steps; ++i) ASSERT_TRUE(session.step(session.step_length())) << session.failure();
+}
+
+const geometry::State& state(const Session& session) { return session.states().front(); }
+Vec3 tip(const Session& session) { return state(session).r.back(); }
+
+double mean_torsion(const Session& session) {
+  double sum = 0;
+  const auto line = session.frame().centerline;
+  for (const CenterlineSample& node : line) sum += node.tau;
+  return sum / static_cast<double>(line.size());
+}
+
+double length(const geometry::State& s) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < s.r.size(); ++i) sum += (s.r[i + 1] - s.r[i]).norm();
+  return sum;
+}
+
+TEST(Session, GoesToRestFirstAndThenMoves) {
+  Session session(cantilever());
+  EXPECT_TRUE(session.on_path());
+  EXPECT_FALSE(session.step(0.01));
+  session.grab(0, 20);
+  EXPECT_FALSE(session.holds());
+  EXPECT_FALSE(session.follow(kLong));
+  EXPECT_FALSE(session.on_path());
+  ASSERT_TRUE(session.summary().has_value());
+  EXPECT_TRUE(session.summary()->converged);
+  EXPECT_EQ(session.failure(), "");
+  const Vec3 rest = tip(session);
+  go(session, 60);
+  EXPECT_NEAR(session.time(), 60 * session.step_length(), 1e-12);
+  EXPECT_LT((tip(session) - rest).norm(), 1e-6);
+}
+
+TEST(Session, AMotionBeginsAtOnce) {
+  Session session(
+      scene::read_scene("cantilever", {"solver.method=implicit", "solver.time_step=0.01", "ribbon.segments=20"}));
+  EXPECT_FALSE(session.on_path());
+  const Vec3 start = tip(session);
+  go(session, 10);
+  EXPECT_LT(tip(session).z(), start.z() - 1e-3);
+}
+
+TEST(Session, AHandPullsAFreePlaceAndLetsGo) {
+  Session session = at_rest();
+  const Vec3 rest = tip(session);
+  session.grab(0, 20);
+  ASSERT_TRUE(session.holds());
+  go(session, 30);
+  EXPECT_LT((tip(session) - rest).norm(), 1e-2) << "what is held stays, until it is dragged";
+  session.drag(rest + Vec3(0, 0, 0.2));
+  go(session, 240);
+  EXPECT_GT(tip(session).z(), rest.z() + 0.1);
+  EXPECT_LT(session.history().area_error, 1e-12);
+  session.let_go();
+  EXPECT_FALSE(session.holds());
+  go(session, 600);
+  EXPECT_LT((tip(session) - rest).norm(), 1e-3) << "it comes to rest again where it was";
+}
+
+TEST(Session, AHandMovesASupportNoFasterThanAStripFollows) {
+  Session session = at_rest();
+  session.grab(0, 0);
+  const Vec3 start = state(session).r.front(), target = start + Vec3(0.05, 0.1, 0);
+  session.drag(target);
+  go(session, 1);
+  const double first = (state(session).r.front() - start).norm();
+  EXPECT_NEAR(first, 2.5 / 120, 1e-9);  // lengths a second shown, 120 steps a second
+  go(session, 30);
+  EXPECT_LT((state(session).r.front() - target).norm(), 1e-9);
+}
+
+TEST(Session, AHandTwistsToBothSides) {
+  for (const double angle : {0.6, -0.6}) {
+    Session session = at_rest();
+    session.grab(0, 20);
+    session.turn(angle);
+    go(session, 60);
+    EXPECT_GT(mean_torsion(session) * angle, 0.1) << angle;
+  }
+}
+
+TEST(Session, SettingsTakeEffect) {
+  Session session = at_rest();
+  const double rest = tip(session).z();
+  Settings wanted = session.settings();
+  wanted.length = 1.1, wanted.width = 0.08, wanted.stiffness = 2, wanted.damping = 5;
+  wanted.gravity = Vec3(0, 0, -1);
+  session.set(wanted);
+  go(session, 300);
+  const geometry::RibbonSpec& ribbon = session.scene().ribbon;
+  EXPECT_NEAR(ribbon.length, 1.1, 1e-9);
+  EXPECT_NEAR(ribbon.width, 0.08, 1e-9);
+  EXPECT_NEAR(ribbon.bending_stiffness, 2, 1e-9);
+  EXPECT_EQ(session.scene().solver.implicit.drag_normal, 5);
+  EXPECT_EQ(session.scene().surroundings.gravity, wanted.gravity);
+  EXPECT_NEAR(length(state(session)), 1.1, 1e-9);
+  EXPECT_GT(tip(session).z(), rest + 0.2) << "stiffer and lighter it hangs less";
+}
+
+TEST(Session, TheFarEndIsTwistedByASetting) {
+  Session session = at_rest();
+  Settings wanted = session.settings();
+  wanted.twist = 0.5;
+  session.set(wanted);
+  go(session, 60);
+  EXPECT_GT(mean_torsion(session), 0.1);
+}
+
+TEST(Session, AStepThatFailsKeepsTheLastGoodStateAndGoesOn) {
+  Session session = at_rest();
+  session.grab(0, 20);
+  double before = 0;
+  bool taken = true;
+  for (int i = 0; i < 2000 && taken; ++i) {
+    session.turn(0.13);
+    before = session.time();
+    taken = session.step(session.step_length());
+  }
+  ASSERT_FALSE(taken) << "no strip can be twisted so far";
+  EXPECT_NE(session.failure(), "");
+  EXPECT_FALSE(session.holds());
+  EXPECT_GE(session.time(), before);
+  EXPECT_LT(session.time(), before + session.step_length());
+  EXPECT_LT(session.history().area_error, 1e-12);
+  EXPECT_EQ(session.history().energy.kinetic, 0);
+  go(session, 60);
+  EXPECT_EQ(session.failure(), "");
+}
+
+TEST(Session, APathThatFailsSaysWhyAndStays) {
+  Session session(scene::read_scene("moebius", {"ribbon.aspect=1.8"}));
+  EXPECT_FALSE(session.follow(kLong));
+  EXPECT_TRUE(session.on_path()) << "a loop that has not closed does not go on";
+  EXPECT_NE(session.failure(), "");
+  EXPECT_FALSE(session.summary()->converged);
+  EXPECT_FALSE(session.step(session.step_length()));
+  EXPECT_FALSE(session.film().empty());
+}
+
+TEST(Session, TheFilmHasTheLastSeconds) {
+  Session session = at_rest();
+  const std::size_t path = session.film().size();
+  EXPECT_GT(path, 1U) << "the path, while nothing has moved";
+  go(session, 60);
+  EXPECT_LT(session.film().size(), 10U);
+  go(session, 1200);
+  const std::vector<Frame> film = session.film();
+  EXPECT_GT(film.size(), 60U);
+  EXPECT_LT(film.size(), 80U);
+  for (std::size_t i = 0; i + 1 < film.size(); ++i) EXPECT_LT(film[i].time, film[i + 1].time);
+  EXPECT_NEAR(film.back().time, session.time(), 1e-12);
+}
+
+}  // namespace
+}  // namespace wunderlich::web
