@@ -145,7 +145,8 @@ Pose animated(const Gltf& gltf, int node, std::size_t k) {
   Pose pose;
   for (const auto& channel : gltf.json["animations"][0]["channels"]) {
     if (channel["target"]["node"] != node) continue;
-    const std::size_t data = gltf.offset(gltf.json["animations"][0]["samplers"][channel["sampler"].get<int>()]["output"]);
+    const std::size_t data =
+        gltf.offset(gltf.json["animations"][0]["samplers"][channel["sampler"].get<int>()]["output"]);
     if (channel["target"]["path"] == "translation") pose.position = load_point(gltf.bin, data + 12 * k);
     if (channel["target"]["path"] == "rotation") {
       for (std::size_t c = 0; c < 4; ++c) pose.frame.coeffs()[c] = load<float>(gltf.bin, data + 16 * k + 4 * c);
@@ -173,7 +174,8 @@ TEST(Glb, SolidsStandAndMoveBesideTheRibbon) {
   EXPECT_EQ(gltf.json["animations"][0]["channels"].size(), 3u) << "weights, and two of the solid that moves";
   for (std::size_t k = 0; k < 3; ++k) {
     const Pose pose = animated(gltf, 2, k);
-    const Vec3 at = turning[k].frame * Vec3(1, 0, 0) + turning[k].position, found = pose.frame * Vec3(1, 0, 0) + pose.position;
+    const Vec3 at = turning[k].frame * Vec3(1, 0, 0) + turning[k].position,
+               found = pose.frame * Vec3(1, 0, 0) + pose.position;
     EXPECT_LT((found - Vec3(at.x(), at.z(), -at.y())).norm(), 1e-6);
     EXPECT_GE(pose.frame.dot(animated(gltf, 2, k > 0 ? k - 1 : 0).frame), 0) << "turns the short way";
   }

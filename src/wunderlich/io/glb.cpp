@@ -161,7 +161,8 @@ Json node(const std::string& name, std::size_t mesh, const Pose& given) {
   const Pose pose = upright(given, Quat::Identity());
   const Vec3& p = pose.position;
   const Vec4 q = pose.frame.coeffs();
-  return {{"name", name}, {"mesh", mesh}, {"translation", {p.x(), p.y(), p.z()}}, {"rotation", {q[0], q[1], q[2], q[3]}}};
+  return {
+      {"name", name}, {"mesh", mesh}, {"translation", {p.x(), p.y(), p.z()}}, {"rotation", {q[0], q[1], q[2], q[3]}}};
 }
 
 Json material(const char* name, const std::array<double, 3>& colour, double roughness) {
@@ -179,7 +180,8 @@ bool moves(const Body& body) {
   });
 }
 
-Json describe(Buffer& buffer, const std::vector<Frame>& frames, const std::vector<Body>& bodies, const std::string& name) {
+Json describe(Buffer& buffer, const std::vector<Frame>& frames, const std::vector<Body>& bodies,
+              const std::string& name) {
   Json out;
   out["asset"] = {{"version", "2.0"}, {"generator", std::string(program) + " " + version}};
   out["scene"] = 0;

@@ -41,7 +41,8 @@ Image draw(const Subject& subject, const Style& style, const Plan& plan, std::si
     }
   };
   std::vector<std::future<void>> helpers;  // which hand on what is thrown, as when memory ends
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) helpers.push_back(std::async(std::launch::async, work));
+  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+    helpers.push_back(std::async(std::launch::async, work));
   work();
   for (std::future<void>& helper : helpers) helper.get();
   return image;
