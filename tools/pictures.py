@@ -74,7 +74,7 @@ def draw_pages(program: str, images: pathlib.Path) -> None:
         subprocess.run([program, "run", "moebius", "--out", str(out), "--formats", "html", "--quiet"], check=True)
         page = out / "report.html"
         shoot(page, page.read_text(encoding="utf-8"), images / "report.png", (1280, 820))
-    shutil.copy(ROOT / "build/web/shots/torsion.png", images / "browser.png")
+    shutil.copy(ROOT / "build/web/shots/still.png", images / "browser.png")
 
 
 def main() -> None:

@@ -21,6 +21,7 @@ constexpr double kHandSpeed = 2.5;     // lengths a second shown
 constexpr double kTurnSpeed = 6;       // radians a second shown
 constexpr double kReach = 0.999;       // of the strip between two supports
 constexpr double kPull = 0.06;         // of the length, farthest that a hand pulls ahead of what it holds
+constexpr double kLead = 1;            // radians, farthest that it turns ahead
 constexpr double kChange = 0.01;       // of length, width, stiffness in a step
 constexpr double kPathPace = 1.0 / 3;  // a strip's own time, in which a wave of bending crosses it, takes three seconds
 constexpr double kPathDamping = 3;     // a second shown, of motions that go on from an equilibrium
@@ -66,6 +67,12 @@ double ruling_ratio(const geometry::RibbonSpec& spec, const geometry::State& sta
 
 bool at_far_end(const Support& support, const geometry::RibbonSpec& ribbon) {
   return support.node == ribbon.segments || support.segment == ribbon.segments - 1;
+}
+
+/// The frame turned towards another, by no more than an angle: a spring between frames half a turn apart would snap.
+Quat near(const Quat& from, const Quat& to, double angle) {
+  const Eigen::AngleAxisd way(from.conjugate() * to.normalized());
+  return way.angle() <= angle ? to.normalized() : from * Quat(Eigen::AngleAxisd(angle, way.axis()));
 }
 
 /// No farther from the other supports than the strip between them reaches.
@@ -297,7 +304,7 @@ void Session::move_hand(double seconds, Surroundings& surroundings) {
   grip.target.position = middle + (stiffness / grip.stiffness) * ahead;
   if (angle != 0 && !hand_->turned) hand_->frame = state.q[s];
   hand_->turned = hand_->turned || angle != 0;
-  hand_->frame = (hand_->frame * turn).normalized();
+  hand_->frame = near(state.q[s], hand_->frame * turn, kLead);
   if (hand_->turned) grip.turn_stiffness = 30 * bending / length;
   grip.target.frame = hand_->frame;
   surroundings.grips.push_back(grip);
@@ -322,7 +329,8 @@ void Session::twist_end(double seconds, Surroundings& surroundings) {
   constraint::Grip grip;
   grip.segment = ribbon.segments - 1;
   grip.turn_stiffness = 30 * ribbon.bending_stiffness * ribbon.width / ribbon.length;
-  grip.target.frame = *twisted_ * math::exp_map(Vec3(0, 0, now_.twist));
+  const Quat wanted = *twisted_ * math::exp_map(Vec3(0, 0, now_.twist));
+  grip.target.frame = near(motion_->states().front().q.back(), wanted, kLead);
   surroundings.grips.push_back(grip);
   if (now_.twist == 0 && wanted_.twist == 0) twisted_.reset();
 }

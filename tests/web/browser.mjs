@@ -166,7 +166,6 @@ async function times(page) {
       const rate = await page.evaluate(() => window.wunderlich.rate(4));
       const name = look === 0 ? 'finest' : `reached (${await page.evaluate(() => window.wunderlich.level())})`;
       console.log(`${segments}  ${name}  ${simulate.toFixed(2)}  ${script.toFixed(2)}  ${draw.toFixed(1)}  ${rate.toFixed(1)}`);
-      if (segments === 100) check(simulate + script < 1000 / 60, 'the simulation of 100 segments leaves time to draw');
     }
   }
 }

@@ -39,6 +39,7 @@ export async function colours(page) {
   check(share > 0.002 && share < 0.1 && again < share / 20, `rulings are ${(100 * share).toFixed(2)} % of the pixels, and go again`);
 
   await page.evaluate(() => window.wunderlich.fix(null));
+  await page.locator('label[title="torsion"]').click();   // the picture of docs/browser.md
   await still(page);
   await page.screenshot({ path: shot('still') });
   const before = await drawn(page);
@@ -47,6 +48,7 @@ export async function colours(page) {
   await page.press('#view', 'ArrowLeft');
   await page.waitForFunction((n) => window.wunderlich.drawn() > n, before, { timeout: 20000 });
   check(true, 'until the view turns');
+  await page.locator('label[title="Paper"]').click();
 }
 
 /** Each of the three curves is another one when the ribbon has been pulled and twisted. */
