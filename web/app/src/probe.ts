@@ -1,6 +1,7 @@
 // What the page tells tests and the curious, as `wunderlich` in the browser's console.
 import { looks } from './quality';
 import type { Page } from './page';
+import type { Settings } from './simulator';
 
 const frameTime = 1 / 60;   // seconds
 
@@ -62,6 +63,7 @@ export function probe(page: Page) {
     field: (name: 'kappa' | 'tau' | 'eta' | 'energy') => Array.from(simulator.view().fields[name]),
     numbers: () => simulator.numbers(),
     settings: () => simulator.settings(),
+    set: (settings: Settings) => simulator.set(settings),
     onPath: () => simulator.onPath(),
     holds: () => simulator.holds(),
     playing: () => clock.playing,
