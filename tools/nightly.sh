@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Slower checks than ./test has time for, some two hours on two cores: the paper's figures in full, clang-tidy on every
-# source, every check of the sanitizers, tests repeated in random order, whole scenes searched for penetration, a sweep of 10,000, one on Slurm, half an hour of fuzzing, the core compiled
-# against libc++, and coverage (build/coverage/report).
+# Slower checks than ./test has time for, some two hours on two cores: the paper's figures in full, pip install from bare
+# sources, the site's links by linkchecker, clang-tidy on every source, imports by Blender, every check of the sanitizers,
+# tests repeated in random order, whole scenes searched for penetration, a sweep of 10,000, one on Slurm, half an hour of
+# fuzzing, the core compiled against libc++, and coverage (build/coverage/report).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh test

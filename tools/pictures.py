@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What the program is asked beside the scene's name, and the export beside the format.
 MORE = {
     "moebius": {"set": ["ribbon.segments=100"]},
-    "coil": {"set": ["solver.duration=2"]},  # where it lies loosened
+    "coil": {"set": ["solver.duration=1.98"]},  # where it lies loosened
     # Motions are shown where they are busy, not where they end.
     "belt-release-stiff": {"set": ["solver.duration=0.3"]},
     "belt-release-soft": {"set": ["solver.duration=0.3"]},

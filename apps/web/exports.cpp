@@ -289,10 +289,8 @@ EXPORT int wl_array_size(int which) {
 /// The answer: the animated surface and the obstacles as a GLB file, or the first strip's pattern as SVG.
 EXPORT int wl_glb() {
   return guarded([] {
-    const std::vector<Frame> film = session->film();
-    std::vector<double> times;
-    for (const Frame& frame : film) times.push_back(frame.time);
-    answer = io::glb(film, scene::bodies_of(session->scene(), times), session->scene().name);
+    const web::Film film = session->film();
+    answer = io::glb(film.frames, film.bodies, session->scene().name);
   });
 }
 EXPORT int wl_pattern() {

@@ -225,16 +225,18 @@ void Session::keep_film() {
   film_.push_back({motion_->states(), motion_->history()});
 }
 
-std::vector<Frame> Session::film() const {
-  std::vector<Frame> frames;
+Film Session::film() const {
   const bool path = on_path() || (film_.size() < 2 && !progress_.records.empty());
-  if (path) {
-    for (const scene::Record& record : progress_.records) frames.push_back(scene::frame_of(scene_, record));
-  } else {
-    for (const scene::Record& record : film_) frames.push_back(scene::frame_of(motion_->scene(), record));
-    if (film_.back().history.time < motion_->time()) frames.push_back(motion_->frame());
+  const scene::Scene& shown = path ? scene_ : motion_->scene();
+  Film film;
+  for (const scene::Record& record : path ? progress_.records : film_) {
+    film.frames.push_back(scene::frame_of(shown, record));
   }
-  return frames;
+  if (!path && film_.back().history.time < motion_->time()) film.frames.push_back(motion_->frame());
+  std::vector<double> times;
+  for (const Frame& frame : film.frames) times.push_back(frame.time);
+  film.bodies = scene::bodies_of(shown, times);
+  return film;
 }
 
 void Session::grab(std::size_t strip, int node) {
@@ -325,12 +327,12 @@ void Session::twist_end(double seconds, Surroundings& surroundings) {
     constraint::move_to({now + seconds, pose, 0}, now, support.motion);
     return;
   }
-  if (!twisted_) twisted_ = motion_->states().front().q.back();
+  const Quat end = motion_->states().front().q.back();
+  twisted_ = near(end, twisted_.value_or(end) * math::exp_map(Vec3(0, 0, now_.twist - before)), kLead);
   constraint::Grip grip;
   grip.segment = ribbon.segments - 1;
   grip.turn_stiffness = 30 * ribbon.bending_stiffness * ribbon.width / ribbon.length;
-  const Quat wanted = *twisted_ * math::exp_map(Vec3(0, 0, now_.twist));
-  grip.target.frame = near(motion_->states().front().q.back(), wanted, kLead);
+  grip.target.frame = *twisted_;
   surroundings.grips.push_back(grip);
   if (now_.twist == 0 && wanted_.twist == 0) twisted_.reset();
 }

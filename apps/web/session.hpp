@@ -33,6 +33,12 @@ struct Hand {
   Quat frame = Quat::Identity();  ///< if so, where
 };
 
+/// What has been shown, with the solids as they stood.
+struct Film {
+  std::vector<Frame> frames;
+  std::vector<Body> bodies;
+};
+
 /// Equilibrium scenes run their path first and go on as motions, with damping, from where it ends; so does every scene
 /// by the implicit method, whatever its own.
 class Session {
@@ -63,8 +69,8 @@ class Session {
   const std::vector<geometry::State>& states() const;
   HistoryRow history() const;
   Frame frame() const;
-  /// The last seconds, or the path: for a film.
-  std::vector<Frame> film() const;
+  /// The last seconds, or the path.
+  Film film() const;
 
   const Settings& settings() const { return wanted_; }
   /// Takes effect within the next steps, little by little.
@@ -96,7 +102,7 @@ class Session {
   double share_ = 0, pace_ = 1, step_ = 0.01, elapsed_ = 0;
   Settings given_, now_, wanted_;
   std::optional<Hand> hand_;
-  std::optional<Quat> twisted_;  ///< frame of a free end that is being twisted, before
+  std::optional<Quat> twisted_;  ///< where the frame of a free end is turned to, while it is
   std::vector<scene::Record> film_;
 };
 

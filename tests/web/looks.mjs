@@ -5,6 +5,7 @@ const drawn = (page) => page.evaluate(() => window.wunderlich.drawn());
 
 /** The picture once it stands still. */
 async function still(page) {
+  await page.evaluate(() => { window.drawnBefore = undefined; });
   await page.waitForFunction(() => {
     const now = window.wunderlich.drawn(), still = now === window.drawnBefore;
     window.drawnBefore = now;

@@ -11,7 +11,7 @@ const icons = {
 };
 
 /** What a clock tells: a line for the user, that the path has ended, that something was left undone. */
-export interface Listener { say(text: string, bad?: boolean): void; arrived(): void; remarked(): void }
+interface Listener { say(text: string, bad?: boolean): void; arrived(): void; remarked(): void }
 
 export class Clock {
   playing = true;
@@ -83,6 +83,8 @@ export class Clock {
       if (!pulled) this.play(false);
     } else if (result === 'remark') {
       listener.say(simulator.failure(), true);
+    }
+    if (result !== 'done') {
       simulator.refresh();
       listener.remarked();
     }

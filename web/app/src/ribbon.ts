@@ -14,7 +14,7 @@ function sequential(t: number): [number, number, number] {
 }
 
 /** A value that all but two per cent stay below. */
-function reach(values: Float32Array): number {
+export function reach(values: Float32Array): number {
   const sizes = Float32Array.from(values, Math.abs).sort();
   return sizes[Math.floor(0.98 * (sizes.length - 1))] || sizes[sizes.length - 1] || 1;
 }

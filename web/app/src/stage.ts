@@ -6,7 +6,7 @@ import {
   zoomCamera,
 } from '../../shared/stage';
 import type { Look } from './quality';
-import { Ribbon, type Colour } from './ribbon';
+import { reach, Ribbon, type Colour } from './ribbon';
 import type { SceneInfo, Solid, View } from './simulator';
 
 const tooFar = 1.5, tooNear = 0.6;   // of the radius that the view was made for: the view follows
@@ -84,7 +84,7 @@ export class Stage {
     this.ribbon.rulings.visible = this.rulings;
     this.body.add(this.ribbon.group);
     for (const solid of solids) this.solids.add(solidMesh(solid.points, solid.normals, solid.triangles));
-    this.changed = true;
+    [this.range, this.changed] = [1e-9, true];
     this.show(view);
     this.lookAt(view, true);
   }
@@ -127,7 +127,7 @@ export class Stage {
   show(view: View) {
     const { ribbon } = this;
     if (!ribbon) return;
-    this.changed ||= ribbon.moved(view, seen * this.fit.radius) || this.solidsMoved(view);
+    this.changed ||= ribbon.moved(view, seen * this.fit.radius) || this.solidsMoved(view) || this.rangeIsOff(view);
     if (!this.changed) return;
     ribbon.show(view);
     this.solids.children.forEach((solid, i) => {
@@ -138,7 +138,12 @@ export class Stage {
   }
   private solidsMoved({ poses }: View): boolean {
     const shown = this.solids.children.flatMap(({ position, quaternion }) => [...position.toArray(), ...quaternion.toArray()]);
-    return shown.some((value, i) => Math.abs(value - poses[i]) > seen * this.fit.radius);
+    return shown.some((value, i) => Math.abs(value - poses[i]) > seen * (i % 7 < 3 ? this.fit.radius : 1));
+  }
+  /** Do the colours still approach the range of what they show? */
+  private rangeIsOff({ fields }: View): boolean {
+    const { colour, range } = this;
+    return colour !== 'none' && Math.abs(reach(fields[colour]) - range) > 0.01 * range;
   }
   private paint(view: View) {
     const { colour, ribbon } = this, white = colour !== 'none';
