@@ -209,7 +209,7 @@ double mesh_energy(const Ribbon& ribbon, const MeshProblem& problem, const MeshP
 }
 
 double mesh_distance(const MeshProblem& problem, const MeshPoints& points) {
-  if (problem.solids.empty()) return kInfinity;
+  if (problem.solids.empty()) return std::numeric_limits<double>::infinity();
   double least = points.beyond;
   for (const FacetPair& pair : points.pairs) least = std::min(least, pair.distance);
   return least - problem.thickness;
