@@ -9,7 +9,7 @@ endif()
 
 function(wunderlich_npm folder what)
   set(installed ${CMAKE_CURRENT_BINARY_DIR}/node_modules/.package-lock.json)
-  cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+  get_filename_component(folder ${folder} ABSOLUTE)
   add_custom_command(
     OUTPUT ${installed}
     COMMAND ${CMAKE_COMMAND} -E copy ${folder}/package.json ${folder}/package-lock.json ${CMAKE_CURRENT_BINARY_DIR}

@@ -74,7 +74,10 @@ def draw_pages(program: str, images: pathlib.Path) -> None:
         subprocess.run([program, "run", "moebius", "--out", str(out), "--formats", "html", "--quiet"], check=True)
         page = out / "report.html"
         shoot(page, page.read_text(encoding="utf-8"), images / "report.png", (1280, 820))
-    shutil.copy(ROOT / "build/web/shots/still.png", images / "browser.png")
+    shot = ROOT / "build/web/shots/still.png"
+    if not shot.exists():
+        raise SystemExit(f"{shot.relative_to(ROOT)} is missing: `./test web` leaves it there")
+    shutil.copy(shot, images / "browser.png")
 
 
 def main() -> None:

@@ -71,8 +71,8 @@ bool at_far_end(const Support& support, const geometry::RibbonSpec& ribbon) {
 
 /// The frame turned towards another, by no more than an angle: a spring between frames half a turn apart would snap.
 Quat near(const Quat& from, const Quat& to, double angle) {
-  const Eigen::AngleAxisd way(from.conjugate() * to.normalized());
-  return way.angle() <= angle ? to.normalized() : from * Quat(Eigen::AngleAxisd(angle, way.axis()));
+  const double way = from.angularDistance(to);
+  return (way <= angle ? to : from.slerp(angle / way, to)).normalized();
 }
 
 /// No farther from the other supports than the strip between them reaches.

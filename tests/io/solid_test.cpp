@@ -205,6 +205,7 @@ TEST(Stl, HoldsEveryTriangleInMillimetres) {
   const std::string file = stl({solid}, "band");
   ASSERT_EQ(file.size(), 84 + 50 * solid.triangles.size());
   EXPECT_NE(file.substr(0, 5), "solid");
+  EXPECT_EQ(file[79], '\0') << "readers take the comment for a C string";
   std::uint32_t count;
   std::memcpy(&count, file.data() + 80, 4);
   EXPECT_EQ(count, solid.triangles.size());

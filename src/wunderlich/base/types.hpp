@@ -17,6 +17,9 @@ using Mat4 = Eigen::Matrix4d;
 /// Memory order is (x, y, z, w), the scalar last, as in the paper.
 using Quat = Eigen::Quaterniond;
 
+/// Of q and -q, which are one frame, the one nearer to another.   @eq Shen2015:18
+inline Quat nearer(const Quat& frame, const Quat& to) { return frame.dot(to) < 0 ? Quat(-frame.coeffs()) : frame; }
+
 /// A position with a material frame: what a clamp prescribes.
 struct Pose {
   Vec3 position = Vec3::Zero();   ///< [m]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "wunderlich/contact/pair.hpp"
 
@@ -10,7 +11,7 @@ namespace wunderlich::contact {
 
 namespace {
 
-constexpr double kPi = EIGEN_PI;
+using std::numbers::pi;
 
 constexpr double kFlat = 1e-9;  // a triangle's height over its length, sine of the angle between faces
 
@@ -140,12 +141,12 @@ TriangleMesh mesh_of(const Box& box) {
 
 TriangleMesh end_of(const Cylinder& cylinder, int side, double beyond) {
   const double half_angle = std::acos(cylinder.radius / (cylinder.radius + beyond));
-  const int sides = static_cast<int>(std::clamp(std::ceil(kPi / half_angle), 8.0, 2000.0));
-  const double radius = cylinder.radius / std::cos(kPi / sides), end = side * cylinder.half_length;
+  const int sides = static_cast<int>(std::clamp(std::ceil(pi / half_angle), 8.0, 2000.0));
+  const double radius = cylinder.radius / std::cos(pi / sides), end = side * cylinder.half_length;
   const double other = end - side * std::min(cylinder.half_length, 0.25 * cylinder.radius);
   std::vector<Vec3> vertices;
   for (int k = 0; k < sides; ++k) {
-    const double angle = 2 * kPi * k / sides;
+    const double angle = 2 * pi * k / sides;
     for (const double z : {std::min(end, other), std::max(end, other)})
       vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
   }
@@ -169,7 +170,7 @@ double winding(const TriangleMesh& mesh, const Vec3& point) {
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return sum / (4 * kPi);
+  return sum / (4 * pi);
 }
 
 Distance distance(const TriangleMesh& mesh, const Vec3& point) {

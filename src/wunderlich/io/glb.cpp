@@ -139,9 +139,7 @@ void animate_ribbon(std::size_t frames, Animation& animation) {
 /// A pose with z up as glTF has it, with y up; of the two quaternions the one nearer to the last.
 Pose upright(const Pose& pose, const Quat& last) {
   const Quat upward(std::sqrt(0.5), -std::sqrt(0.5), 0, 0);  // a quarter turn about x
-  Pose out{upward * pose.position, upward * pose.frame};
-  if (out.frame.dot(last) < 0) out.frame.coeffs() = -out.frame.coeffs();
-  return out;
+  return {upward * pose.position, nearer(upward * pose.frame, last)};
 }
 
 void animate_body(std::size_t node, const std::vector<Pose>& poses, Animation& animation) {

@@ -8,12 +8,6 @@
 
 namespace wunderlich::scene {
 
-namespace {
-
-constexpr int kHalvings = 8;
-
-}  // namespace
-
 long steps_of(double time, double time_step) { return std::lround(std::ceil(time / time_step - 1e-9)); }
 
 ModelLog::ModelLog(const Scene& scene, Model model, double until, double unit, const Observer& observer)
@@ -33,7 +27,7 @@ bool ModelLog::count_step(double time, double seconds, int iterations) {
 
 Tried ModelLog::in_halves(const Stepped& model, double t0, double t1, int halvings) {
   const Tried tried = model.step_to(t1);
-  if (tried.failure.empty() || halvings == kHalvings) return tried;
+  if (tried.failure.empty() || halvings == kMaxHalvings) return tried;
   const double middle = 0.5 * (t0 + t1);
   const Tried first = in_halves(model, t0, middle, halvings + 1);
   const int before = tried.iterations + first.iterations;

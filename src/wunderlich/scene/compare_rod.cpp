@@ -18,7 +18,7 @@ namespace rod = baseline::rod;
 
 namespace {
 
-constexpr int kLoadSteps = 20, kStepsAtRest = 20;
+constexpr int kLoadSteps = 20;
 
 rod::Rod rod_of(const Scene& scene) {
   const geometry::RibbonSpec& spec = scene.ribbon;
@@ -121,7 +121,7 @@ struct RodRun {
 
   bool is_over() {
     resting = !path && is_slow() ? resting + 1 : 0;
-    return scene.solver.stop_at_rest && resting >= kStepsAtRest;
+    return scene.solver.stop_at_rest && resting >= kRestingSteps;
   }
 
   Mesh surface() const { return rod::surface_mesh(rod, state, scene.output.across); }

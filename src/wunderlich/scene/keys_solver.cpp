@@ -5,6 +5,8 @@ namespace wunderlich::scene {
 
 namespace {
 
+using namespace bound;
+
 const std::vector<Key> solver_table = {
     {"solver", Type::map, "", 0, 0, "", {}, "How the state is found."},
     {"solver.method",
@@ -40,7 +42,7 @@ const std::vector<Key> solver_table = {
      Type::number,
      "s",
      1e-9,
-     bound::long_time,
+     long_time,
      "",
      {},
      "Time at which the motion ends; load parameter at the end of a path. Default: the last keyframe, or 1 without "

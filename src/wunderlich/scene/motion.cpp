@@ -17,8 +17,6 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr int kMaxHalvings = 8;  // of a step that fails
-
 std::unique_ptr<Mover> mover_of(const Scene& scene) {
   return scene.solver.method == Method::two_stage ? two_stage_mover(scene) : implicit_mover(scene);
 }

@@ -12,6 +12,9 @@
 
 namespace wunderlich::scene {
 
+inline constexpr int kMaxHalvings = 8;    ///< of a step that fails
+inline constexpr int kRestingSteps = 20;  ///< below the speed of rest, before a motion is over
+
 struct Recording {
   std::vector<Record> records;
   Timing timing;

@@ -13,8 +13,6 @@ using geometry::Ribbon;
 
 namespace {
 
-constexpr int kRestingSteps = 20;  // below the speed of rest, before a motion is over
-
 /// Which ends of an open strip have a frame of their own: those that a clamp holds at this time.
 std::array<bool, 2> clamped_at(const Scene& scene, double time) {
   std::array<bool, 2> clamped{};

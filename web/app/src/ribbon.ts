@@ -70,11 +70,10 @@ export class Ribbon {
     out.fill(1);
     colour.needsUpdate = true;
   }
-  /** By a field of the nodes; the range is that of the colours before, the one they now have is returned. */
-  paint(field: Float32Array, signed: boolean, before: number): number {
+  /** By a field of the nodes, whose largest value has the last colour. */
+  paint(field: Float32Array, signed: boolean, range: number) {
     const { nodeBefore, share } = this, map = signed ? diverging : sequential;
     const colour = attribute(this.mesh, 'color'), out = colour.array as Float32Array;
-    const largest = reach(field), range = largest > before ? largest : before + 0.05 * (largest - before);
     const rgb = new THREE.Color();
     const painted = Array.from(field, (value) => rgb.setRGB(...map(value / range), THREE.SRGBColorSpace).toArray());
     for (let i = 0; i < nodeBefore.length; ++i) {
@@ -82,7 +81,6 @@ export class Ribbon {
       for (let c = 0; c < 3; ++c) out[3 * i + c] = a[c] + (b[c] - a[c]) * share[i];
     }
     colour.needsUpdate = true;
-    return range;
   }
 
   /** The node whose part of the ribbon a ray meets first. */

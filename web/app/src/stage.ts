@@ -11,6 +11,7 @@ import type { SceneInfo, Solid, View } from './simulator';
 
 const tooFar = 1.5, tooNear = 0.6;   // of the radius that the view was made for: the view follows
 const seen = 2e-4;                   // of that radius: less is no motion; a tenth of a pixel
+const narrowing = 0.05;              // of the colours' range, in a frame
 const skyLight = 5.5;                // about as light as the room
 
 export class Stage {
@@ -127,7 +128,7 @@ export class Stage {
   show(view: View) {
     const { ribbon } = this;
     if (!ribbon) return;
-    this.changed ||= ribbon.moved(view, seen * this.fit.radius) || this.solidsMoved(view) || this.rangeIsOff(view);
+    if (this.follows(view) || ribbon.moved(view, seen * this.fit.radius) || this.solidsMoved(view)) this.changed = true;
     if (!this.changed) return;
     ribbon.show(view);
     this.solids.children.forEach((solid, i) => {
@@ -140,17 +141,21 @@ export class Stage {
     const shown = this.solids.children.flatMap(({ position, quaternion }) => [...position.toArray(), ...quaternion.toArray()]);
     return shown.some((value, i) => Math.abs(value - poses[i]) > seen * (i % 7 < 3 ? this.fit.radius : 1));
   }
-  /** Do the colours still approach the range of what they show? */
-  private rangeIsOff({ fields }: View): boolean {
+  /** The range of the colours, which widens at once and narrows little by little. Has it changed? */
+  private follows({ fields }: View): boolean {
     const { colour, range } = this;
-    return colour !== 'none' && Math.abs(reach(fields[colour]) - range) > 0.01 * range;
+    if (colour === 'none') return false;
+    const largest = reach(fields[colour]);
+    if (largest <= range && largest > 0.99 * range) return false;
+    this.range = largest > range ? largest : range + narrowing * (largest - range);
+    return true;
   }
   private paint(view: View) {
     const { colour, ribbon } = this, white = colour !== 'none';
     for (const material of [this.fine.material, this.matt]) material.color.set(white ? 0xffffff : paint.front);
     this.fine.back.value.set(white ? 0xffffff : this.oneSided ? paint.front : paint.back);
     if (colour === 'none') ribbon!.whiten();
-    else this.range = ribbon!.paint(view.fields[colour], colour !== 'energy', this.range);
+    else ribbon!.paint(view.fields[colour], colour !== 'energy', this.range);
   }
 
   setColour(colour: Colour, view: View) {

@@ -12,9 +12,6 @@ using geometry::Ribbon;
 
 namespace {
 
-/// sgn(q . q_f) q_f: the covering of S^3 that is nearer.   @eq Shen2015:18
-Quat nearer(const Quat& frame, const Quat& to) { return frame.dot(to) < 0 ? Quat(-frame.coeffs()) : frame; }
-
 Vec3 edge_direction(const geometry::State& shape, std::size_t segment) {
   return (shape.r[segment + 1] - shape.r[segment]).normalized();
 }
