@@ -124,7 +124,8 @@ inline WidthFactor<double> ruling_barrier(double x, double wall = 0) {
   detail::add_wall(x, wall, barrier);
   return barrier;
 }
-inline WidthFactor<math::Four> ruling_barrier(math::Four x, double wall = 0) {
+// Inlined, so that whoever asks for derivatives alone pays for no logarithm.
+[[gnu::always_inline]] inline WidthFactor<math::Four> ruling_barrier(math::Four x, double wall = 0) {
   if (math::all_below(x * x, 1 - wall)) return detail::finite_barrier(x);
   return detail::by_lane([wall](double lane) { return ruling_barrier(lane, wall); }, x);
 }
