@@ -68,18 +68,36 @@ def metadata():
     return "\n".join([*lines, "Description-Content-Type: text/markdown", "", (ROOT / about["readme"]).read_text(encoding="utf-8")])
 
 
+def stem():
+    """Of the files' names: name-version."""
+    about = project()
+    return f"{about['name']}-{about['version']}"
+
+
+def describe():
+    """The files of the .dist-info folder that do not depend on what is built."""
+    wheel = f"Wheel-Version: 1.0\nGenerator: {stem()}\nRoot-Is-Purelib: false\nTag: {tag()}\n"
+    return {"METADATA": metadata().encode(), "LICENSE": (ROOT / "LICENSE").read_bytes(), "WHEEL": wheel.encode()}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """So that pip hears what is needed before anything is compiled."""
+    folder = Path(metadata_directory) / f"{stem()}.dist-info"
+    folder.mkdir()
+    for name, data in describe().items():
+        (folder / name).write_bytes(data)
+    return folder.name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     package = build_module()
-    about = project()
-    stem = f"{about['name']}-{about['version']}"
+    info = f"{stem()}.dist-info"
     files = {f"wunderlich/{path.name}": path.read_bytes() for path in sorted(package.iterdir()) if path.is_file()}
-    files[f"{stem}.dist-info/METADATA"] = metadata().encode()
-    files[f"{stem}.dist-info/LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    files[f"{stem}.dist-info/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: {stem}\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()
+    files |= {f"{info}/{name}": data for name, data in describe().items()}
     record = [f"{name},sha256={base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b'=').decode()},{len(data)}"
               for name, data in files.items()]
-    files[f"{stem}.dist-info/RECORD"] = "\n".join([*record, f"{stem}.dist-info/RECORD,,", ""]).encode()
-    wheel = f"{stem}-{tag()}.whl"
+    files[f"{info}/RECORD"] = "\n".join([*record, f"{info}/RECORD,,", ""]).encode()
+    wheel = f"{stem()}-{tag()}.whl"
     with zipfile.ZipFile(Path(wheel_directory) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
             archive.writestr(zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0)), data, zipfile.ZIP_DEFLATED)
@@ -88,14 +106,12 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 def build_sdist(sdist_directory, config_settings=None):
     """Every file under version control, and PKG-INFO."""
-    about = project()
-    stem = f"{about['name']}-{about['version']}"
     names = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines()
     info = Path(sdist_directory) / "PKG-INFO"
     info.write_text(metadata(), encoding="utf-8")
-    with tarfile.open(Path(sdist_directory) / f"{stem}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as archive:
-        archive.add(info, f"{stem}/PKG-INFO")
+    with tarfile.open(Path(sdist_directory) / f"{stem()}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as archive:
+        archive.add(info, f"{stem()}/PKG-INFO")
         for name in names:
-            archive.add(ROOT / name, f"{stem}/{name}")
+            archive.add(ROOT / name, f"{stem()}/{name}")
     info.unlink()
-    return f"{stem}.tar.gz"
+    return f"{stem()}.tar.gz"
