@@ -10,8 +10,8 @@ import {
 import { keyboard, mouse, refusals, restart, touch, twist } from './hand.mjs';
 import { asGiven, colours, memory, plots, reachable, spoken } from './looks.mjs';
 
-const flags = ['--headless', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-  '--disable-background-networking', '--no-first-run'];
+// Where there is no graphics processor Chromium draws in software, if it is allowed to.
+const flags = ['--headless', '--no-sandbox', '--enable-unsafe-swiftshader', '--disable-background-networking', '--no-first-run'];
 
 async function sizes() {
   const all = readdirSync(folder).map((name) => [name, gzipSync(readFileSync(path.join(folder, name)), { level: 9 }).length]);
