@@ -1,10 +1,13 @@
 #include "session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "reach.hpp"
 #include "scene_time.hpp"
 #include "wunderlich/base/error.hpp"
 #include "wunderlich/math/rotation.hpp"
@@ -19,21 +22,14 @@ namespace {
 constexpr double kSteps = 120;         // a second shown
 constexpr double kHandSpeed = 2.5;     // lengths a second shown
 constexpr double kTurnSpeed = 6;       // radians a second shown
-constexpr double kReach = 0.999;       // of the strip between two supports
 constexpr double kPull = 0.06;         // of the length, farthest that a hand pulls ahead of what it holds
 constexpr double kLead = 1;            // radians, farthest that it turns ahead
 constexpr double kChange = 0.01;       // of length, width, stiffness in a step
 constexpr double kPathPace = 1.0 / 3;  // a strip's own time, in which a wave of bending crosses it, takes three seconds
 constexpr double kPathDamping = 3;     // a second shown, of motions that go on from an equilibrium
-constexpr double kWidest = 0.95;       // of the width at which rulings meet
+constexpr int kSegments = 2000;        // of all strips: a step of more is not one frame's work
 constexpr std::size_t kFilm = 72;      // frames
 constexpr double kFilmRate = 12;       // a second shown
-
-/// At most so long.
-Vec3 within(const Vec3& v, double most) {
-  const double norm = v.norm();
-  return norm > most ? Vec3(v * (most / norm)) : v;
-}
 
 double towards(double now, double wanted, double most) { return now + std::clamp(wanted - now, -most, most); }
 
@@ -55,16 +51,6 @@ Settings settings_of(const scene::Scene& scene) {
           scene.surroundings.gravity};
 }
 
-/// The largest |w eta'/2|.
-double ruling_ratio(const geometry::RibbonSpec& spec, const geometry::State& state) {
-  const geometry::Ribbon ribbon = geometry::make_ribbon(spec);
-  double most = 0;
-  for (std::size_t i = 0; i + 1 < state.eta.size(); ++i) {
-    most = std::max(most, std::abs(state.eta[i + 1] - state.eta[i]) * 0.5 * ribbon.width / ribbon.rest_length[i]);
-  }
-  return most;
-}
-
 bool at_far_end(const Support& support, const geometry::RibbonSpec& ribbon) {
   return support.node == ribbon.segments || support.segment == ribbon.segments - 1;
 }
@@ -75,23 +61,15 @@ Quat near(const Quat& from, const Quat& to, double angle) {
   return (way <= angle ? to : from.slerp(angle / way, to)).normalized();
 }
 
-/// No farther from the other supports than the strip between them reaches.
-Vec3 reachable(Vec3 point, std::size_t index, const scene::Scene& strip, double time) {
-  const double segment = strip.ribbon.length / strip.ribbon.segments;
-  const auto& supports = strip.surroundings.supports;
-  if (strip.ribbon.closure == geometry::Closure::loop) return point;
-  for (std::size_t k = 0; k < supports.size(); ++k) {
-    if (k == index) continue;
-    const Vec3 other = constraint::pose_at(supports[k].motion, time).position;
-    const double between = segment * std::abs(supports[k].node - supports[index].node);
-    point = other + within(point - other, kReach * between);
-  }
-  return point;
-}
-
 }  // namespace
 
 Session::Session(scene::Scene scene) : scene_(std::move(scene)) {
+  int segments = 0;
+  for (const scene::Scene* strip : scene::strips_of(scene_)) segments += strip->ribbon.segments;
+  if (segments > kSegments) {
+    throw InputError(fmt::format("ribbon.segments: {} in all; here at most {} are taken, the program takes more",
+                                 segments, kSegments));
+  }
   // Smooth enough to look at, small enough for sixty frames a second.
   scene_.output.subdivision = scene_.ribbon.segments <= 60 ? 3 : scene_.ribbon.segments <= 150 ? 2 : 1;
   scene_.output.across = 4;
@@ -111,12 +89,9 @@ Session::Session(scene::Scene scene) : scene_(std::move(scene)) {
   start_motion(std::move(live), {});
 }
 
+/// The motion before it goes on where this one is refused.
 void Session::start_motion(scene::Scene scene, std::vector<geometry::State> states) {
-  if (states.empty()) {
-    motion_.emplace(std::move(scene));
-  } else {
-    motion_.emplace(std::move(scene), std::move(states));
-  }
+  motion_ = states.empty() ? scene::Stepper(std::move(scene)) : scene::Stepper(std::move(scene), std::move(states));
   failure_ = motion_->failure();
   film_.clear();
   keep_film();
@@ -165,46 +140,53 @@ void Session::remake(const Edit& edit) {
     return scene::strips_of(all)[hand_->strip]->surroundings.supports.size();
   };
   if (hand_ && supports(scene) != supports(motion_->scene())) hand_.reset();
-  elapsed_ += motion_->time();
+  const double passed = motion_->time();
   edit(scene, states);
   start_motion(std::move(scene), std::move(states));
+  elapsed_ += passed;
+}
+
+bool Session::reshapes() const {
+  return now_.length != wanted_.length || now_.width != wanted_.width || now_.stiffness != wanted_.stiffness ||
+         now_.damping != wanted_.damping;
 }
 
 /// Length, width, stiffness and damping a little nearer to what is wanted.
 void Session::reshape() {
-  if (now_.length == wanted_.length && now_.width == wanted_.width && now_.stiffness == wanted_.stiffness &&
-      now_.damping == wanted_.damping) {
-    return;
-  }
-  const double length = factor(now_.length, wanted_.length), stiffness = factor(now_.stiffness, wanted_.stiffness);
-  double width = factor(now_.width, wanted_.width);
-  const auto& states = motion_->states();
+  if (!reshapes()) return;
+  Scale scale{factor(now_.length, wanted_.length), factor(now_.width, wanted_.width)};
+  const double stiffness = factor(now_.stiffness, wanted_.stiffness);
   const std::vector<const scene::Scene*> strips = scene::strips_of(motion_->scene());
+  std::string remark;
   for (std::size_t i = 0; i < strips.size(); ++i) {
-    const double ratio = ruling_ratio(strips[i]->ribbon, states[i]);
-    if (width > 1 && ratio * width / length > kWidest) width = std::max(1.0, kWidest / ratio);
+    const std::string why = limit(scale, *strips[i], motion_->states()[i], motion_->time());
+    if (!why.empty()) remark = why;
   }
-  now_.length = std::abs(now_.length * length - wanted_.length) < 1e-12 ? wanted_.length : now_.length * length;
-  const bool stuck = width == 1 && now_.width != wanted_.width;
-  now_.width = stuck ? now_.width : now_.width * width;
-  if (stuck) wanted_.width = now_.width;
-  now_.stiffness *= stiffness;
-  now_.damping = wanted_.damping;
+  Settings next = now_;
+  next.length *= scale.length;
+  next.width *= scale.width;
+  next.stiffness *= stiffness;
+  next.damping = wanted_.damping;
+  if (std::abs(next.length - wanted_.length) < 1e-12) next.length = wanted_.length;
+  // What goes no further is wanted no more.
+  if (scale.length == 1) wanted_.length = next.length;
+  if (scale.width == 1) wanted_.width = next.width;
   remake([&](scene::Scene& scene, std::vector<geometry::State>& shapes) {
     std::size_t i = 0;
-    scene.solver.implicit.drag_normal = scene.solver.implicit.drag_tangent = now_.damping;
+    scene.solver.implicit.drag_normal = scene.solver.implicit.drag_tangent = next.damping;
     each_strip(scene, [&](scene::Scene& strip) {
-      strip.ribbon.length *= length;
-      strip.ribbon.width *= width;
+      strip.ribbon.length *= scale.length;
+      strip.ribbon.width *= scale.width;
       strip.ribbon.bending_stiffness *= stiffness;
       const auto& supports = strip.surroundings.supports;
       const Vec3 still = supports.empty() ? shapes[i].r[shapes[i].r.size() / 2]
                                           : shapes[i].r[static_cast<std::size_t>(supports.front().node)];
-      for (Vec3& r : shapes[i].r) r = still + length * (r - still);
+      for (Vec3& r : shapes[i].r) r = still + scale.length * (r - still);
       ++i;
     });
   });
-  if (stuck) failure_ = "the strip cannot be wider in this shape: rulings would meet";
+  now_ = next;
+  failure_ = remark;
 }
 
 void Session::set(const Settings& settings) { wanted_ = settings; }
@@ -356,6 +338,7 @@ void Session::impose(double seconds) {
 bool Session::step(double seconds) {
   if (on_path()) return false;
   failure_.clear();
+  const std::optional<Form> before = reshapes() ? std::optional<Form>(form()) : std::nullopt;
   try {
     reshape();
     impose(seconds);
@@ -369,14 +352,35 @@ bool Session::step(double seconds) {
   } catch (const std::exception& error) {
     failure_ = std::string("this should not happen: ") + error.what();
   }
-  // The last good state, with everything where it is there.
+  const std::string failure = failure_;
+  recover(before);
+  failure_ = failure;
+  return false;
+}
+
+Session::Form Session::form() const {
+  Form form{now_, {}, motion_->states()};
+  for (const scene::Scene* strip : scene::strips_of(motion_->scene())) form.ribbons.push_back(strip->ribbon);
+  return form;
+}
+
+/// The last good state, with everything where it is there. A form that could not be reached is wanted no more.
+void Session::recover(const std::optional<Form>& before) {
   const bool pulled = hand_ || wanted_.twist != now_.twist || twisted_;
   hand_.reset();
   twisted_.reset();
   wanted_.twist = now_.twist;
-  const std::string failure = failure_;
+  if (before) {
+    now_.length = wanted_.length = before->settings.length;
+    now_.width = wanted_.width = before->settings.width;
+    now_.stiffness = wanted_.stiffness = before->settings.stiffness;
+  }
   remake([&](scene::Scene& scene, std::vector<geometry::State>& shapes) {
+    if (before) shapes = before->states;
+    std::size_t i = 0;
     each_strip(scene, [&](scene::Scene& strip) {
+      if (before) strip.ribbon = before->ribbons[i];
+      ++i;
       strip.surroundings.grips.clear();
       for (Support& support : strip.surroundings.supports) {
         if (!pulled) continue;
@@ -385,11 +389,9 @@ bool Session::step(double seconds) {
     });
     // What a hand has torn about stands still; else the next steps fail as well.
     for (geometry::State& shape : shapes) {
-      if (pulled) std::fill(shape.r_dot.begin(), shape.r_dot.end(), Vec3::Zero());
+      if (pulled || before) std::fill(shape.r_dot.begin(), shape.r_dot.end(), Vec3::Zero());
     }
   });
-  failure_ = failure;
-  return false;
 }
 
 }  // namespace wunderlich::web

@@ -43,7 +43,7 @@ struct Film {
 /// by the implicit method, whatever its own.
 class Session {
  public:
-  /// Throws InputError if the strip starts inside a solid.
+  /// Throws InputError if the strip starts inside a solid, or has more segments than a page can move.
   explicit Session(scene::Scene scene);
 
   /// Is the path to the equilibrium still under way?
@@ -88,7 +88,16 @@ class Session {
   void go_live();
   template <class Edit>
   void remake(const Edit& edit);
+  /// What a change of length, width and stiffness starts from.
+  struct Form {
+    Settings settings;
+    std::vector<geometry::RibbonSpec> ribbons;
+    std::vector<geometry::State> states;
+  };
+  Form form() const;
+  bool reshapes() const;
   void reshape();
+  void recover(const std::optional<Form>& before);
   void impose(double seconds);
   void move_hand(double seconds, constraint::Surroundings& surroundings);
   void twist_end(double seconds, constraint::Surroundings& surroundings);

@@ -18,22 +18,13 @@ namespace wunderlich::app {
 
 namespace {
 
-void check_thickness(double thickness, io::Format format, const std::vector<FlatPattern>& strips) {
-  if (format != io::Format::stl && format != io::Format::mf3 && format != io::Format::obj) {
-    throw InputError(fmt::format("--thickness: is for stl, 3mf and obj, not for {}", io::name(format)));
-  }
-  double width = strips.front().width;
-  for (const FlatPattern& strip : strips) width = std::min(width, strip.width);
-  if (!(thickness > 0 && thickness <= width)) {
-    throw InputError(fmt::format("--thickness: {:g} is not allowed; must be above 0 and at most the width, {:g} m",
-                                 thickness, width));
-  }
-}
-
 void require_format(bool given, const char* option, io::Format format, std::initializer_list<io::Format> allowed) {
   if (!given || std::find(allowed.begin(), allowed.end(), format) != allowed.end()) return;
   std::string names;
-  for (const io::Format one : allowed) names += (names.empty() ? "" : " and ") + std::string(io::name(one));
+  const io::Format* const last = allowed.end() - 1;
+  for (const io::Format& one : allowed) {
+    names += (names.empty() ? "" : &one == last ? " and " : ", ") + std::string(io::name(one));
+  }
   throw InputError(fmt::format("{}: is for {}, not for {}", option, names, io::name(format)));
 }
 
@@ -42,6 +33,7 @@ picture::Style style_of(const ExportArguments& arguments, io::Format format) {
   require_format(!arguments.size.empty(), "--size", format, {png, mp4});
   require_format(!arguments.view.empty(), "--view", format, {png, mp4});
   require_format(!arguments.colour.empty(), "--colour", format, {png, mp4});
+  require_format(arguments.thickness.has_value(), "--thickness", format, {stl, mf3, obj});
   require_format(arguments.frame.has_value(), "--frame", format, {png});
   require_format(arguments.fps.has_value(), "--fps", format, {mp4});
   picture::Style style;
@@ -88,7 +80,6 @@ int export_command(const ExportArguments& arguments) {
   const std::filesystem::path summary = folder / io::summary_file;
   io::RunOutput output =
       output_of(run, io::parse_summary(io::read_file(summary), summary.string()), report::report_template(), style);
-  if (arguments.thickness) check_thickness(*arguments.thickness, format, output.patterns);
   output.thickness = arguments.thickness;
   if (!arguments.out.empty()) {
     io::write_format(arguments.out, format, output);

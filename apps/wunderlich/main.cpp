@@ -1,4 +1,6 @@
 /// The program `wunderlich`: what the user says, sorted into commands, and what goes wrong, sorted into exit codes.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -13,6 +15,9 @@ namespace wunderlich::app {
 
 namespace {
 
+/// An empty name is a slip of a script: `--out "$unset"`.
+std::string not_empty(const std::string& name) { return name.empty() ? "must not be empty" : ""; }
+
 void add_set(CLI::App& command, std::vector<std::string>& set) {
   command.add_option("--set", set, "Override any key of the scene: key.path=value, with a YAML value; repeatable")
       ->allow_extra_args(false)
@@ -26,6 +31,7 @@ void add_run(CLI::App& program, RunArguments& arguments, int& exit_code) {
       ->type_name("SCENE");
   command
       ->add_option("--out", arguments.out, "The run folder; default out/<scene>. A run folder there is replaced whole")
+      ->check(not_empty)
       ->type_name("DIR");
   add_set(*command, arguments.set);
   command
@@ -74,13 +80,16 @@ void add_export(CLI::App& program, ExportArguments& arguments, int& exit_code) {
   command->add_option("--frame", arguments.frame, "The recorded frame that a png shows, from 0; default: the last")
       ->type_name("N");
   command->add_option("--fps", arguments.fps, "Recorded frames a second of an mp4; default 25")->type_name("RATE");
-  command->add_option("--out", arguments.out, "The file to write; default: in the run folder")->type_name("FILE");
+  command->add_option("--out", arguments.out, "The file to write; default: in the run folder")
+      ->check(not_empty)
+      ->type_name("FILE");
   command->callback([&] { exit_code = export_command(arguments); });
 }
 
 void add_sweep_run(CLI::App& command, SweepArguments& arguments) {
   command.add_option("sweep", arguments.sweep, "A sweep file")->type_name("SWEEP");
   command.add_option("--out", arguments.out, "The sweep's folder; default out/<sweep>. What is there already is kept")
+      ->check(not_empty)
       ->type_name("DIR");
   command.add_option("--engine", arguments.engine, "local: processes on this machine; slurm: a job array of shards")
       ->type_name("ENGINE");
@@ -126,6 +135,7 @@ void add_compare(CLI::App& program, CompareArguments& arguments, int& exit_code)
       ->add_option("--models", arguments.models, "Some of ribbon,rod,shell-conforming,shell-nonconforming; default all")
       ->type_name("LIST");
   command->add_option("--out", arguments.out, "The folder; default out/<scene>-compare. A comparison there is replaced")
+      ->check(not_empty)
       ->type_name("DIR");
   add_set(*command, arguments.set);
   command->add_flag("--quiet", arguments.quiet, "Say nothing but errors");
@@ -158,6 +168,10 @@ int run_program(int argc, char** argv) {
   bool json = false;
   schema->add_flag("--json", json, "As a JSON Schema, for editors");
   schema->callback([&] { exit_code = schema_command(json); });
+  const auto asked_for = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && program.get_subcommands(asked_for).empty()) {
+    return report(bad_input, fmt::format("there is no command '{}'; wunderlich --help lists what there is", argv[1]));
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -109,6 +109,7 @@ void move(Motion& motion, std::size_t strip, std::size_t support, const std::opt
   if (!std::isfinite(turn)) throw py::value_error("turn: not a finite number");
   const double now = motion.stepper().time();
   change(motion, strip, [&](Surroundings& s) {
+    if (now >= support_of(s, support).release) throw py::value_error("support: it has let go");
     constraint::Motion& path = support_of(s, support).motion;
     constraint::PoseKey target{until, constraint::pose_at(path, now), turn};
     if (position) target.pose.position = vector(*position);

@@ -122,7 +122,9 @@ void define_run(py::module_& module) {
       .def(
           "state",
           [](const Run& r, long frame, std::size_t strip) -> const geometry::State& {
-            return r.record(frame).states.at(strip);
+            const std::vector<geometry::State>& states = r.record(frame).states;
+            if (strip >= states.size()) throw py::index_error("strip out of range");
+            return states[strip];
           },
           py::return_value_policy::reference_internal)
       .def("arrays", [](const Run& r, std::size_t strip) { return strip_arrays(r.stored.scene, r.records(), strip); })

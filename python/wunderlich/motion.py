@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import index
 from typing import Any
 
 from . import _wunderlich
@@ -10,6 +11,14 @@ from .result import NotConverged, Strip, Surface
 from .scene import Overrides, Scene, SceneLike, _scene_of
 
 Vector = Sequence[float]
+
+
+def _vector(name: str, value: Vector) -> list[float]:
+    try:
+        x, y, z = (float(component) for component in value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: must be three numbers, not {value!r}") from None
+    return [x, y, z]
 
 
 class Motion:
@@ -92,8 +101,8 @@ class Motion:
 
     @gravity.setter
     def gravity(self, value: Vector) -> None:
-        x, y, z = value
-        self._native.gravity = (float(x), float(y), float(z))
+        x, y, z = _vector("gravity", value)
+        self._native.gravity = (x, y, z)
 
     def supports(self, strip: int = 0) -> list[dict[str, Any]]:
         """What holds a strip, in the order that `move` and `release` count: the scene's clamps, its pins, then those of
@@ -109,16 +118,16 @@ class Motion:
         takes [s]; one time step of the scene without.
         """
         until = self._later("over", self.scene.time_step if over is None else over)
-        place = None if position is None else [float(x) for x in position]
-        self._native.move(strip, support, place, [float(x) for x in rotation], float(turn), until)
+        place = None if position is None else _vector("position", position)
+        self._native.move(index(strip), index(support), place, _vector("rotation", rotation), float(turn), until)
 
     def hold(self, node: int, *, strip: int = 0) -> int:
         """Pins a node where it is; the number of the new support, for `move` and `release`."""
-        return self._native.hold(strip, node)
+        return self._native.hold(index(strip), index(node))
 
     def release(self, support: int, *, strip: int = 0) -> None:
         """A support lets go."""
-        self._native.release(strip, support)
+        self._native.release(index(strip), index(support))
 
     def __repr__(self) -> str:
         return f"<Motion {self.scene.name} at {self.time:g} s>"

@@ -44,6 +44,17 @@ def _place(axes: Any, points: NDArray[np.float64]) -> None:
     axes.set_box_aspect(extent)
 
 
+def _expect(value: Any, kind: type, what: str) -> None:
+    if not isinstance(value, kind):
+        raise TypeError(f"{what} is wanted, not a {type(value).__name__}")
+
+
+def _values(surface: Surface, color_by: str) -> NDArray[np.float64]:
+    if color_by not in surface.fields:
+        raise ValueError(f"color_by: the surface has no {color_by!r}; it has {', '.join(surface.fields)}")
+    return surface.fields[color_by]
+
+
 def _draw(surface: Surface, axes: Any, color_by: str | None, cmap: str, limits: tuple[float, float] | None) -> Any:
     """Draws the triangles; what turns values into colors, if they say something."""
     from matplotlib import cm, colors
@@ -53,7 +64,7 @@ def _draw(surface: Surface, axes: Any, color_by: str | None, cmap: str, limits: 
     scale = None
     faces = np.tile(colors.to_rgba("tan"), (len(corners), 1))
     if color_by is not None:
-        values = surface.fields[color_by][surface.triangles].mean(axis=1)
+        values = _values(surface, color_by)[surface.triangles].mean(axis=1)
         scale = cm.ScalarMappable(colors.Normalize(*(limits or (values.min(), values.max()))), cmap)
         faces = scale.to_rgba(values)
     faces = _shaded(corners, faces)
@@ -63,6 +74,7 @@ def _draw(surface: Surface, axes: Any, color_by: str | None, cmap: str, limits: 
 
 def surface(surface: Surface, *, axes: Any = None, color_by: str | None = None, cmap: str = "viridis") -> Any:
     """A ribbon in 3D, true to scale. `color_by` is the name of a field of the surface."""
+    _expect(surface, Surface, "a Surface, as result.surface()")
     axes = _axes(axes, projection="3d")
     scale = _draw(surface, axes, color_by, cmap, None)
     if scale is not None:
@@ -74,6 +86,7 @@ def surface(surface: Surface, *, axes: Any = None, color_by: str | None = None, 
 
 def profile(strip: Strip, frame: int = -1, *, axes: Any = None) -> Any:
     """Curvature, torsion [1/m] and slope of the rulings along a strip."""
+    _expect(strip, Strip, "a Strip, as result.strip")
     axes = _axes(axes)
     for values, label in [(strip.kappa, "κ [1/m]"), (strip.tau, "τ [1/m]"), (strip.eta, "η")]:
         axes.plot(strip.u, values[frame], label=label)
@@ -84,6 +97,7 @@ def profile(strip: Strip, frame: int = -1, *, axes: Any = None) -> Any:
 
 def energies(history: Mapping[str, NDArray[Any]], *, axes: Any = None) -> Any:
     """Elastic, kinetic, gravity's and total energy [J] over time [s], of `Result.history`."""
+    _expect(history, Mapping, "a history, as result.history")
     axes = _axes(axes)
     for name in ["elastic", "kinetic", "gravity", "total"]:
         axes.plot(history["time"], history[name], label=name)
@@ -104,7 +118,7 @@ def film(result: Result, *, axes: Any = None, color_by: str | None = None, cmap:
     surfaces = [result.surface(i) for i in range(len(result))]
     limits = None
     if color_by is not None:
-        fields = [one.fields[color_by] for one in surfaces]
+        fields = [_values(one, color_by) for one in surfaces]
         limits = (min(f.min() for f in fields), max(f.max() for f in fields))
     _place(axes, np.concatenate([one.points for one in surfaces]))
 

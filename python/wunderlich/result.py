@@ -106,14 +106,14 @@ class Result:
             raise ValueError(f"there is nothing to resume: the run of {self.scene.name} is {self.outcome}")
         return _run(self.scene, observer, self._native)
 
-    def save(self, folder: str | os.PathLike[str], formats: Iterable[str] = ()) -> None:
+    def save(self, folder: str | os.PathLike[str], formats: str | Iterable[str] = ()) -> None:
         """Writes a run folder, whole or not at all; one that is there is replaced.
 
-        Beside the tables, the summary and the checkpoint the formats asked for, of "vtp", "glb", "pc2", "obj", "svg" and
+        Beside the tables, the summary and the checkpoint the format or formats asked for, of "vtp", "glb", "pc2", "obj", "svg" and
         those that `wunderlich export` knows; it makes further ones of the folder later. Raises InputError if the folder
         holds something else or cannot be written.
         """
-        self._native.save(Path(folder), list(formats))
+        self._native.save(Path(folder), [formats] if isinstance(formats, str) else list(formats))
 
     @classmethod
     def load(cls, folder: str | os.PathLike[str]) -> Result:
@@ -166,7 +166,8 @@ def equilibrium(scene: SceneLike, overrides: Overrides | None = None, *, observe
 
     A scene of a motion is taken with its strips, supports and loads, at rest at the end of its duration; its section
     `solver` is replaced (the exact energy, default tolerances). Raises InputError where it has what an equilibrium
-    knows nothing of: friction, an initial state.
+    knows nothing of: friction, releases, an initial state; None takes such a key away:
+    `equilibrium("twist-release-soft", {"initial": None, "clamps.1.release": None})`.
     """
     checked = _scene_of(scene, overrides)
     if checked.method != "equilibrium":

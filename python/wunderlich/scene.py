@@ -13,6 +13,8 @@ Overrides = Mapping[str, Any]
 
 
 def _assignments(overrides: Overrides | None) -> list[str]:
+    if overrides is not None and not isinstance(overrides, Mapping):
+        raise TypeError(f"overrides: must be values by dotted key, as {{\"ribbon.segments\": 100}}, not a {type(overrides).__name__}")
     return [f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"
             for key, value in (overrides or {}).items()]
 
@@ -29,7 +31,7 @@ class Scene:
 
     Build one from the keys of a scene file: `Scene({"ribbon": {"length": 1, "width": 0.1}, ...})`; NumPy's numbers and
     arrays may stand in it. `load` reads a file or a shipped scene. `overrides` are values by dotted key, as `--set` on
-    the command line: `{"ribbon.segments": 100, "ribbon.aspect": "5pi/4"}`.
+    the command line: `{"ribbon.segments": 100, "ribbon.aspect": "5pi/4"}`; None takes a key away.
 
     Raises InputError (a ValueError) with the key, its value and what would be right.
     """
@@ -121,4 +123,6 @@ def _scene_of(scene: SceneLike, overrides: Overrides | None) -> Scene:
         return scene.copy(overrides) if overrides else Scene._of(scene._native)
     if isinstance(scene, Mapping):
         return Scene(scene, overrides)
+    if not isinstance(scene, (str, os.PathLike)):
+        raise TypeError(f"a Scene, its content as a dict, a file or a shipped scene's name is wanted, not a {type(scene).__name__}")
     return load(scene, overrides)

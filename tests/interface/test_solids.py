@@ -88,10 +88,13 @@ class Solids(ProgramTest):
             self.expect(0, "run", "strip.yaml", "--out", name, "--formats", "stl", "--quiet", *material)
             self.assertAlmostEqual(admesh(self.folder / name / "ribbon.stl")[2], 1e9 * 1 * 0.1 * expected,
                                    delta=1e7 * 0.1 * expected)
+        self.expect(0, "run", "strip.yaml", "--out", "block", "--formats", "stl", "--quiet", "--set", "ribbon.young_modulus=1",
+                    "--set", "ribbon.thickness=0.5")
+        self.assertAlmostEqual(admesh(self.folder / "block" / "ribbon.stl")[2], 1e9 * 1 * 0.1 * 0.1 / 50, delta=2e4)
 
     def test_refuses_a_thickness_that_makes_no_body(self):
         self.expect(0, "run", "strip.yaml", "--out", "run", "--formats", "none", "--quiet")
-        for thickness in ("0", "-1", "nan", "inf", "0.11"):
+        for thickness in ("0", "-1", "nan", "inf", "0.11", "1e-7", "1e-300"):
             self.expect_refused("export", "run", "--to", "stl", f"--thickness={thickness}", says=["--thickness", "0.1 m"])
         self.expect_refused("export", "run", "--to", "glb", "--thickness", "0.001", says="stl, 3mf and obj")
         self.expect_refused("export", "run", "--to", "stl", "--thickness", "thin", says="--thickness")

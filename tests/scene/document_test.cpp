@@ -101,6 +101,22 @@ TEST(ApplyOverride, SaysWhatIsWrong) {
   EXPECT_NE(refused("a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t.u.v=1").find("too many parts"), std::string::npos);
 }
 
+TEST(ApplyOverride, NullTakesAKeyOrAnElementAway) {
+  const std::string text = "m: {a: 1, b: {c: 2, d: 3}}\nl: [4, 5, 6]\n";
+  const auto without = [&](const std::string& assignment) {
+    Value root = parse_document(text, "f");
+    apply_override(root, assignment);
+    return to_yaml(root);
+  };
+  const auto yaml = [](const std::string& tree) { return to_yaml(parse_document(tree, "g")); };
+  EXPECT_EQ(without("m.b.c=null"), yaml("m: {a: 1, b: {d: 3}}\nl: [4, 5, 6]\n"));
+  EXPECT_EQ(without("m.b=~"), yaml("m: {a: 1}\nl: [4, 5, 6]\n"));
+  EXPECT_EQ(without("l.1=null"), yaml("m: {a: 1, b: {c: 2, d: 3}}\nl: [4, 6]\n"));
+  for (const std::string absent : {"m.x=null", "l.3=null", "l.x=null", "m.a.b=null", "n=null"}) {
+    EXPECT_THROW(without(absent), InputError) << absent;
+  }
+}
+
 TEST(ToYaml, ReadsBackToTheSameTree) {
   const std::string text =
       "t: \"a, b: c # d\"\np: plain, with comma\nn: [1e-3, 2pi, \"2pi\"]\nm: {k: [{a: x}, {}], l: []}\n";

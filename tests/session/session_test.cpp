@@ -205,6 +205,37 @@ TEST(Session, AStepThatFailsKeepsTheLastGoodStateAndGoesOn) {
   EXPECT_EQ(session.failure(), "");
 }
 
+/// The setting is asked for until it goes no further; every step succeeds, and the strip stays a strip.
+void shortens_as_far_as_it_can(const std::string& name, double least) {
+  Session session(scene::read_scene(name, {}));
+  ASSERT_FALSE(session.follow(kLong));
+  const double given = session.settings().length;
+  Settings half = session.settings();
+  half.length *= 0.5;
+  session.set(half);
+  std::string remark;
+  for (int i = 0; i < 150; ++i) {
+    session.step(session.step_length());
+    if (!session.failure().empty()) remark = session.failure();
+    ASSERT_TRUE(std::isfinite(session.history().energy.elastic)) << name << ", step " << i;
+  }
+  EXPECT_EQ(remark.empty(), std::abs(session.settings().length - 0.5 * given) < 1e-9) << name << " stops and says why";
+  EXPECT_GE(session.settings().length, least) << name;
+  EXPECT_LT(session.history().area_error, 1e-12) << name;
+  half = session.settings();
+  half.length = given;
+  session.set(half);
+  go(session, 100);
+  EXPECT_NEAR(session.settings().length, given, 1e-9) << name;
+}
+
+TEST(Session, AStripIsNoShorterThanItsShapeAndItsSupportsAllow) {
+  shortens_as_far_as_it_can("buckled-strip", 0.8);  // what lies between its clamps
+  shortens_as_far_as_it_can("twist-pi", 0.5);       // its rulings nearly meet
+  shortens_as_far_as_it_can("coil", 0.5);
+  shortens_as_far_as_it_can("drape-cylinder", 0.15);
+}
+
 TEST(Session, APathThatFailsSaysWhyAndStays) {
   Session session(scene::read_scene("moebius", {"ribbon.aspect=1.8"}));
   EXPECT_FALSE(session.follow(kLong));

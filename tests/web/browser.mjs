@@ -5,10 +5,10 @@ import path from 'node:path';
 import { deflateRawSync, gzipSync } from 'node:zlib';
 import {
   bad, check, choose, chromium, download, failures, folder, moved, nodes, numbers, open, pixels, rewrite, serve, setRange, settings,
-  shot,
+  shot, twisted,
 } from './driver.mjs';
 import { keyboard, mouse, refusals, restart, touch, twist } from './hand.mjs';
-import { asGiven, colours, memory, plots, reachable, spoken } from './looks.mjs';
+import { asGiven, colours, falling, memory, plots, reachable, spoken } from './looks.mjs';
 
 // Where there is no graphics processor Chromium draws in software, if it is allowed to.
 const flags = ['--headless', '--no-sandbox', '--enable-unsafe-swiftshader', '--disable-background-networking', '--no-first-run'];
@@ -51,13 +51,16 @@ async function shareLink(page, context) {
   await setRange(page, '#set-stiffness', Math.log(2));
   await page.locator('label[title="torsion"]').click();
   await page.click('#rulings');
+  await setRange(page, '#set-twist', 60);
   await page.click('#share');
   await page.waitForFunction(() => location.hash.startsWith('#s='));
   const link = page.url();
   check(link.length < 2000, `a link of ${link.length} characters`);
   const other = await open(context, link);
   await other.waitForFunction(() => !window.wunderlich.onPath(), undefined, { timeout: 60000 });
-  const { stiffness } = await settings(other);
+  const { stiffness, twist: turned } = await settings(other);
+  check(Math.abs(turned - Math.PI / 3) < 1e-9, `and its twist: ${turned}`);
+  await twisted(other, 0.2);
   check(Math.abs(stiffness - 2) < 0.02, `it brings the scene with its stiffness: ${stiffness}`);
   check(await other.locator('input[value=tau]').isChecked(), 'and the colours');
   check((await other.getAttribute('#rulings', 'aria-pressed')) === 'true', 'and the rulings');
@@ -191,7 +194,7 @@ try {
   await page.screenshot({ path: shot('desktop'), fullPage: true });
   const parts = {
     mouse, twist, keyboard, restart, refusals, sliders, asGiven, colours, plots, shareLink, strangeLinks, downloads, slidersKept, badScene,
-    badFrame, memory, spoken, reachable,
+    badFrame, falling, memory, spoken, reachable,
   };
   const measurements = { times };   // no tests: only when asked for
   const wanted = process.env.ONLY?.split(',') ?? Object.keys(parts);

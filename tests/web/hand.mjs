@@ -17,6 +17,15 @@ export async function mouse(page) {
   check(apart(now.slice(0, 3), before.slice(0, 3)) < 1e-9, 'the clamped end has stayed');
   check(error < 1e-9, `the surface is still that of the flat strip: area error ${error}`);
   await page.screenshot({ path: shot('cantilever') });
+  await page.keyboard.press('Control+A');   // with text selected a browser would drag that
+  const [u, v] = await place(page, 50), selected = await nodes(page);
+  await page.mouse.move(u, v);
+  await page.mouse.down();
+  await page.mouse.move(u - 50, v - 60, { steps: 6 });
+  check(await holds(page), 'the mouse holds where text is selected');
+  await moved(page, selected, 0.05);
+  await page.mouse.up();
+  await page.evaluate(() => getSelection().removeAllRanges());
 }
 
 /** By the wheel, and sideways with Shift: a right-handed turn gives positive torsion. */
@@ -90,7 +99,7 @@ export async function refusals(page) {
   await page.keyboard.press('e');
   await page.evaluate(() => { window.given = window.wunderlich.settings(); window.wunderlich.set({ ...window.given, gravity: [0, 0, -1e300] }); });
   await page.waitForFunction(() => !window.wunderlich.holds(), undefined, { timeout: 60000 });
-  const said = (await page.evaluate(() => window.said)).find((text) => /^Let go: .+/.test(text));
+  const said = (await page.evaluate(() => window.said)).find((text) => /^Let go; .+: .+/.test(text));
   check(said && (await bad(page)), `when a step fails the hand lets go: ${said}`);
   await page.evaluate(() => window.wunderlich.set(window.given));
   await page.keyboard.press('e');

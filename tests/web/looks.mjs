@@ -96,6 +96,16 @@ export async function memory(page) {
   check(after.every((now) => now === first), `ten more scenes need no more graphics memory: ${first}, then ${after.at(-1)}`);
 }
 
+/** A ribbon that nothing holds falls, and the view with it. */
+export async function falling(page) {
+  await choose(page, 'moebius');
+  await setRange(page, '#set-gravity', 20);
+  const lowest = () => page.evaluate(() => Math.min(...window.wunderlich.nodes().filter((_, i) => i % 3 === 2)));
+  await page.waitForFunction(() => Math.max(...window.wunderlich.nodes().filter((_, i) => i % 3 === 2)) < -100, undefined, { timeout: 60000 });
+  const share = await pixels(page, await page.locator('#view').screenshot());
+  check(share > 0.02, `${-Math.round(await lowest())} m below it still covers ${(100 * share).toFixed(1)} % of the picture`);
+}
+
 /** The line that is read out names each part of a path once, without counting. */
 export async function spoken(page) {
   await listen(page);

@@ -7,6 +7,7 @@ const superscripts: Record<string, string> = {
 /** `digits` significant ones; powers of ten where that is easier to read. */
 export function number(value: number, digits = 5): string {
   if (value === 0) return '0';
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? '–' : value > 0 ? '∞' : '−∞';
   const size = Math.abs(value);
   if (size >= 1e-3 && size < 1e6) return String(Number(value.toPrecision(digits))).replace('-', '−');
   const [mantissa, exponent] = value.toExponential(Math.max(0, Math.min(digits, 3) - 1)).split('e');

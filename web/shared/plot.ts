@@ -16,7 +16,7 @@ export function axes(xLabel: string, yLabel: string, extra: Partial<uPlot.Axis> 
   };
   return [
     { ...common, label: xLabel, size: 30 },
-    { ...common, label: yLabel, size: 58, ...extra },
+    { ...common, label: yLabel, size: 58, space: 24, ...extra },
   ];
 }
 

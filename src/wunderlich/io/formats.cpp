@@ -54,7 +54,9 @@ std::vector<Format> parse_formats(std::string_view list) {
   std::vector<Format> formats;
   while (true) {
     const std::size_t comma = list.find(',');
-    const Format format = parse_format(trimmed(list.substr(0, comma)));
+    const std::string_view one = trimmed(list.substr(0, comma));
+    if (one == "none") throw InputError(fmt::format("none stands alone; allowed are {}", format_names()));
+    const Format format = parse_format(one);
     if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
     if (comma == std::string_view::npos) return formats;
     list.remove_prefix(comma + 1);

@@ -62,10 +62,21 @@ std::vector<RenderedFile> render_patterns(const RunOutput& output, const std::st
   std::vector<RenderedFile> files;
   for (std::size_t i = output.patterns.size(); i-- > 0;) {
     const std::string name = i == 0 ? stem + ".svg" : fmt::format("{}-{}.svg", stem, i + 1);
-    const std::string title = i == 0 ? output.summary.scene : fmt::format("{}, ribbon {}", output.summary.scene, i + 1);
-    files.emplace_back(name, pattern_svg(output.patterns[i], title));
+    const std::string which = output.patterns.size() > 1 ? fmt::format(", ribbon {}", i + 1) : "";
+    const std::string rest = output.summary.converged ? "" : " (did not come to its end)";
+    files.emplace_back(name, pattern_svg(output.patterns[i], output.summary.scene + which + rest));
   }
   return files;
+}
+
+/// An export does not replace what the run itself consists of.
+void require_no_part_of_run(const fs::path& file) {
+  const std::string name = file.filename().string();
+  for (const char* const own : {summary_file, checkpoint_file, centerline_file, history_file}) {
+    if (name == own && is_run_folder(fs::absolute(file).parent_path())) {
+      throw InputError(fmt::format("{}: is a part of the run; give the file another name", file.string()));
+    }
+  }
 }
 
 }  // namespace
@@ -112,8 +123,8 @@ void write_run_folder(const fs::path& folder, const RunOutput& output, const std
   require_finite(output);
   write_whole_folder(folder, is_run_folder, [&](const FolderWriter& write) {
     write({{summary_file, summary_json(output.summary)},
-           {"centerline.csv", centerline_csv(output.frames.back().centerline)},
-           {"history.csv", history_csv(output.history)},
+           {centerline_file, centerline_csv(output.frames.back().centerline)},
+           {history_file, history_csv(output.history)},
            {checkpoint_file, encode_checkpoint(output.checkpoint)}});
     for (const Format format : formats) write(render(format, output));
   });
@@ -121,6 +132,7 @@ void write_run_folder(const fs::path& folder, const RunOutput& output, const std
 
 void write_format(const fs::path& file, Format format, const RunOutput& output) {
   require_finite(output);
+  require_no_part_of_run(file);
   const fs::path folder = file.parent_path();
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);

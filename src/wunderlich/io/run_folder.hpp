@@ -11,9 +11,11 @@
 
 namespace wunderlich::io {
 
-/// Names of the files that every run folder holds, and by which one is recognised.
+/// Names of the files that every run folder holds; by the first two one is recognised.
 inline constexpr const char* summary_file = "summary.json";
 inline constexpr const char* checkpoint_file = "checkpoint";
+inline constexpr const char* centerline_file = "centerline.csv";
+inline constexpr const char* history_file = "history.csv";
 
 /// Whether a folder is one that `write_run_folder` wrote.
 bool is_run_folder(const std::filesystem::path& folder);
@@ -31,7 +33,8 @@ std::vector<RenderedFile> render(Format format, const RunOutput& output, const s
 /// does, or if a disk is full; std::domain_error if a number is not finite. In either case nothing is left behind.
 void write_run_folder(const std::filesystem::path& folder, const RunOutput& output, const std::vector<Format>& formats);
 
-/// Writes one format to `file` (and, for vtp and pc2, what belongs to it beside it). Throws InputError.
+/// Writes one format to `file` (and, for vtp and pc2, what belongs to it beside it). Throws InputError, also where the
+/// file is one of those that every run folder holds.
 void write_format(const std::filesystem::path& file, Format format, const RunOutput& output);
 
 }  // namespace wunderlich::io

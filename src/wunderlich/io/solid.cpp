@@ -5,6 +5,8 @@
 #include <cassert>
 #include <iterator>
 
+#include "wunderlich/base/error.hpp"
+
 namespace wunderlich::io {
 
 namespace {
@@ -90,14 +92,31 @@ Solid thicken(const Mesh& surface, const Grid& grid, double thickness) {
   return solid;
 }
 
+namespace {
+
+/// Files hold single precision, in which both sheets must differ.
+double least_thickness(const FlatPattern& strip) { return 1e-6 * strip.length; }
+
+bool makes_body(double thickness, const FlatPattern& strip) {
+  return thickness >= least_thickness(strip) && thickness <= strip.width;
+}
+
+double thickness_of(const RunOutput& output, const FlatPattern& strip) {
+  if (!output.thickness) return makes_body(strip.thickness, strip) ? strip.thickness : strip.width / 50;
+  if (makes_body(*output.thickness, strip)) return *output.thickness;
+  throw InputError(fmt::format(
+      "--thickness: {:g} m is not allowed; must be from {:g} m, a millionth of the length, to the width, {:g} m",
+      *output.thickness, least_thickness(strip), strip.width));
+}
+
+}  // namespace
+
 std::vector<Solid> solids(const RunOutput& output) {
   const Mesh& surface = output.frames.back().surface;
   const std::vector<Grid> strips = grids(surface, output.patterns);
   std::vector<Solid> list;
   for (std::size_t i = 0; i < strips.size(); ++i) {
-    const FlatPattern& pattern = output.patterns[i];
-    const double own = pattern.thickness > 0 ? pattern.thickness : pattern.width / 50;
-    list.push_back(thicken(surface, strips[i], output.thickness.value_or(own)));
+    list.push_back(thicken(surface, strips[i], thickness_of(output, output.patterns[i])));
   }
   return list;
 }

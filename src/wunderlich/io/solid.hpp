@@ -33,8 +33,9 @@ std::vector<Grid> grids(const Mesh& surface, const std::vector<FlatPattern>& pat
 /// other. Where the surface bends more sharply than half the thickness the body passes through itself.
 Solid thicken(const Mesh& surface, const Grid& grid, double thickness);
 
-/// The final surface, a body a strip, as thick as `output.thickness` says; else as the material of the strip is, or a
-/// fiftieth of its width.
+/// The final surface, a body a strip, as thick as `output.thickness` says; else as the material of the strip is, or,
+/// where that is not known or makes no body, a fiftieth of its width. Throws InputError where `output.thickness` is no
+/// more than a millionth of a strip's length, or more than its width.
 std::vector<Solid> solids(const RunOutput& output);
 
 /// Wavefront OBJ, in metres, z up; an object a body.

@@ -30,6 +30,15 @@ std::vector<double> slopes_of(const Frame& frame) {
   return slopes;
 }
 
+/// Rounding makes curvatures of about 1e-16 over the size of a strip; what is below this is none.
+double nothing(const Frame& frame, Colour colour) {
+  constexpr double kNothing = 1e-10;
+  if (colour == Colour::eta) return kNothing;
+  const std::vector<double> u = values_of(frame.surface, "u");
+  const double curvature = kNothing / *std::max_element(u.begin(), u.end());
+  return colour == Colour::energy ? curvature * curvature : curvature;
+}
+
 }  // namespace
 
 float linear_of(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
@@ -63,7 +72,8 @@ double range_of(const std::vector<const Frame*>& frames, Colour colour) {
   std::sort(sizes.begin(), sizes.end());
   const double below = colour == Colour::energy ? 0.9 : 0.98;
   const double most = sizes[static_cast<std::size_t>(below * static_cast<double>(sizes.size() - 1))];
-  return most > 0 ? most : sizes.back() > 0 ? sizes.back() : 1;
+  const double least = nothing(*frames.front(), colour);
+  return most > least ? most : sizes.back() > least ? sizes.back() : 1;
 }
 
 double share_of(double value, double range, Colour colour) {

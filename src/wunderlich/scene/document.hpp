@@ -47,7 +47,7 @@ std::string described(const Value& value);
 Value parse_document(const std::string& text, const std::string& source, bool override_source = false);
 
 /// Applies `key.path=value`; list elements by index, the index after the last one appends. Missing maps and lists
-/// on the way are created.
+/// on the way are created. `null` takes the key, or the list's element, away.
 void apply_override(Value& root, const std::string& assignment);
 
 /// The tree as YAML that parses to the same tree; scalars keep their spelling.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "wunderlich/scene/document.hpp"
@@ -50,6 +51,36 @@ Value& map_item(Value& map, const std::string& part, const Place& place) {
   return map.items.back();
 }
 
+void erase_item(Value& holder, std::size_t index) {
+  const auto at = static_cast<std::ptrdiff_t>(index);
+  if (holder.kind == Value::Kind::map) {
+    holder.names.erase(holder.names.begin() + at);
+    holder.name_places.erase(holder.name_places.begin() + at);
+  }
+  holder.items.erase(holder.items.begin() + at);
+}
+
+/// The index of a part that is there, or the number of items.
+std::size_t find_item(const Value& holder, const std::string& part) {
+  const std::size_t count = holder.items.size();
+  if (holder.kind == Value::Kind::map) {
+    return static_cast<std::size_t>(std::find(holder.names.begin(), holder.names.end(), part) - holder.names.begin());
+  }
+  const auto index = is_index(part) ? parse_whole(part) : std::nullopt;
+  return index && *index < static_cast<long>(count) ? static_cast<std::size_t>(*index) : count;
+}
+
+/// Takes a key or a list's element away. Throws InputError where there is none.
+void take_away(Value& root, const std::vector<std::string>& parts, const Place& place, const std::string& path) {
+  Value* holder = &root;
+  for (std::size_t i = 0;; ++i) {
+    const std::size_t index = find_item(*holder, parts[i]);
+    if (index == holder->items.size()) fail(place, path, "is not in the scene, so that null takes nothing away");
+    if (i + 1 == parts.size()) return erase_item(*holder, index);
+    holder = &holder->items[index];
+  }
+}
+
 /// One step down the tree; an absent value becomes the map or list that the step needs.
 Value& descend(Value& value, const std::string& part, const Place& place, const std::string& path) {
   if (value.kind == Value::Kind::null) value.kind = is_index(part) ? Value::Kind::list : Value::Kind::map;
@@ -69,11 +100,7 @@ void drop_alternative(Value& root, const std::string& path) {
     for (std::size_t i = 0; i < ribbon->names.size(); ++i) {
       // What another override set stays: two overrides that contradict each other are an error of the user's.
       if (ribbon->names[i] != other || ribbon->name_places[i].line == 0) continue;
-      const auto at = static_cast<std::ptrdiff_t>(i);
-      ribbon->names.erase(ribbon->names.begin() + at);
-      ribbon->name_places.erase(ribbon->name_places.begin() + at);
-      ribbon->items.erase(ribbon->items.begin() + at);
-      return;
+      return erase_item(*ribbon, i);
     }
   }
 }
@@ -89,11 +116,17 @@ void apply_override(Value& root, const std::string& assignment) {
   if (first_bad_byte(path)) fail(place, "", "the key is not UTF-8 text");
   const std::vector<std::string> parts = split(path);
   if (parts.size() > longest_path) fail(place, "", "the key has too many parts");
-  Value value = parse_document(assignment.substr(equals + 1), source, true);
-  if (value.kind == Value::Kind::null) fail(place, shown(path), "has no value");
-  Value* target = &root;
   for (const std::string& part : parts) {
     if (part.empty()) fail(place, shown(path), "has an empty part; keys look like ribbon.width or clamps.0.turn");
+  }
+  const std::string text = assignment.substr(equals + 1);
+  Value value = parse_document(text, source, true);
+  if (value.kind == Value::Kind::null) {
+    if (text.find_first_not_of(" \t") == std::string::npos) fail(place, shown(path), "has no value");
+    return take_away(root, parts, place, shown(path));
+  }
+  Value* target = &root;
+  for (const std::string& part : parts) {
     target = &descend(*target, part, place, shown(path));
   }
   *target = std::move(value);

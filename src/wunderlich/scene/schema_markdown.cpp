@@ -37,7 +37,7 @@ clamps:
   4 MiB.
 - `--set key=value` overrides or adds any key, with a YAML value: `--set ribbon.segments=200`,
   `--set gravity=[0,0,-9.81]`, `--set clamps.1.turn=pi/2` (elements of a list by index; the index after the last
-  appends). Setting `ribbon.aspect` replaces a `ribbon.width` of the file, and the reverse.
+  appends). `null` takes a key, or a list's element, away: `--set contact.friction=null`. Setting `ribbon.aspect` replaces a `ribbon.width` of the file, and the reverse.
 )";
 
 const char* const limits = R"(

@@ -79,7 +79,7 @@ export class Clock {
     const { simulator, listener } = this, pulled = simulator.holds(), result = simulator.step(h);
     if (result === 'failed') {
       const failure = simulator.failure();
-      listener.say(pulled ? `Let go: ${failure}` : failure, true);
+      listener.say(pulled ? `Let go; pulled faster than the strip follows: ${failure}` : failure, true);
       if (!pulled) this.play(false);
     } else if (result === 'remark') {
       listener.say(simulator.failure(), true);

@@ -24,6 +24,8 @@ export class Hand {
     canvas.addEventListener('pointerdown', (event) => this.down(event), { capture: true });
     canvas.addEventListener('pointermove', (event) => this.move(event));
     for (const name of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(name, (event) => this.up(event));
+    // Where text is selected the browser would drag that away.
+    document.addEventListener('dragstart', (event) => { if (this.held) event.preventDefault(); });
     canvas.addEventListener('wheel', (event) => {
       if (!this.held) return;
       event.preventDefault();

@@ -3,8 +3,8 @@ import { byId, element } from '../../shared/format';
 import { toFragment, type Shared } from './share';
 import type { Simulator } from './simulator';
 
-/** `current`: the scene as it is now; it throws if what the sliders say cannot be written. */
-export function connectKeep(simulator: Simulator, name: () => string, current: () => Shared) {
+/** `current`: the scene as a text; it throws if what the sliders say cannot be written. */
+export function connectKeep(simulator: Simulator, name: () => string, current: () => string, shared: () => Shared) {
   const kept = (text: string) => { byId('kept').textContent = text; };
   const keep = (id: string, work: () => void | Promise<void>) => byId(id).addEventListener('click', async () => {
     try {
@@ -22,14 +22,14 @@ export function connectKeep(simulator: Simulator, name: () => string, current: (
   };
   keep('save-glb', () => save(simulator.glb(), 'model/gltf-binary', '.glb'));
   keep('save-pattern', () => save(simulator.pattern(), 'image/svg+xml', '-pattern.svg'));
-  keep('save-scene', () => save(current().text, 'text/yaml', '.yaml'));
+  keep('save-scene', () => save(current(), 'text/yaml', '.yaml'));
   keep('share', async () => {
-    history.replaceState(null, '', await toFragment(current()));
+    history.replaceState(null, '', await toFragment(shared()));
     try {
       await navigator.clipboard.writeText(location.href);
-      kept('The link is copied; it holds the whole scene.');
+      kept('The link is copied; it holds the scene and the sliders.');
     } catch {
-      kept('The link is in the address bar; it holds the whole scene.');
+      kept('The link is in the address bar; it holds the scene and the sliders.');
     }
   });
 }

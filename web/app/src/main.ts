@@ -13,8 +13,8 @@ async function start() {
     const simulator = await Simulator.start(module), scenes = simulator.scenes();
     const page = new Page(simulator, scenes);
     connectControls(page, scenes);
-    connectKeep(simulator, () => page.name, () => ({
-      name: page.name, text: page.current(), colour: page.colour, rulings: page.rulings,
+    connectKeep(simulator, () => page.name, () => page.current(), () => ({
+      name: page.name, text: page.text, settings: simulator.settings(), colour: page.colour, rulings: page.rulings,
     }));
     await page.open();
     Object.assign(window, { wunderlich: probe(page) });

@@ -48,6 +48,7 @@ export class Page {
     this.sliders = new Sliders((settings) => {
       simulator.set(settings);
       simulator.refresh();
+      if (!simulator.onPath()) this.say('');
     }, (halfTwists) => this.edit([`ribbon.half_twists=${halfTwists}`]));
   }
 
@@ -123,6 +124,7 @@ export class Page {
   }
   private openShared(shared: Shared): boolean {
     if (!this.load(shared.text, shared.name)) return false;
+    if (shared.settings) this.sliders.put(shared.settings);
     byId<HTMLSelectElement>('scene').value = shared.name;
     if (shared.colour) this.setColour(shared.colour);
     this.setRulings(shared.rulings === true);

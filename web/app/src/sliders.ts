@@ -81,7 +81,7 @@ export class Sliders {
   }
   private addHalfTwists(host: HTMLElement, halfTwists: number) {
     const { input, output } = this.row(host, 'half-twists', 'Half twists');
-    Object.assign(input, { min: '-4', max: '4', step: '1', value: String(halfTwists) });
+    Object.assign(input, { min: '-2', max: '2', step: '1', value: String(halfTwists) });
     output.textContent = String(halfTwists).replace('-', '−');
     input.addEventListener('input', () => { output.textContent = input.value.replace('-', '−'); });
     input.addEventListener('change', () => this.twisted(Number(input.value)));
@@ -101,10 +101,12 @@ export class Sliders {
       this.write(slider, input, output);
     }
   }
-  asGiven() {
-    this.show({ ...this.given });
+  /** As if all had been moved there by hand. */
+  put(settings: Settings) {
+    this.show(settings);
     this.changed(this.now);
   }
+  asGiven() { this.put(this.given); }
 
   /** Keys of the scene that give what the sliders say; throws where they cannot be written. */
   overrides(info: SceneInfo): string[] {

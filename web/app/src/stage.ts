@@ -104,14 +104,15 @@ export class Stage {
     return { ...fit, radius: Math.max(fit.radius, 0.25 * (this.info?.strips[0].length ?? 1)) };
   }
 
-  /** Follows a ribbon that leaves the picture or becomes small in it; little by little. */
+  /** Follows a ribbon that leaves the picture or becomes small in it: little by little, and the farther out the faster. */
   follow(view: View) {
     const wanted = this.wanted(view), { fit } = this;
     const out = wanted.centre.distanceTo(fit.centre) + wanted.radius;
     if (out < tooFar * fit.radius && wanted.radius > tooNear * fit.radius) return;
-    fit.centre.lerp(wanted.centre, 0.06);
-    fit.radius += 0.06 * (wanted.radius - fit.radius);
-    fit.floor += 0.06 * (wanted.floor - fit.floor);
+    const share = Math.min(1, 0.06 + 0.5 * Math.max(0, out / fit.radius - tooFar));
+    fit.centre.lerp(wanted.centre, share);
+    fit.radius += share * (wanted.radius - fit.radius);
+    fit.floor += share * (wanted.floor - fit.floor);
     this.place();
   }
   private place() {
