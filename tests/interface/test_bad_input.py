@@ -74,6 +74,8 @@ class BadInput(ProgramTest):
         self.expect_refused("run", "strip.yaml", "--set", "clamps.7.at=end", says="clamps.7.at")
 
     def test_formats(self):
+        self.expect_refused("frobnicate", says="'frobnicate'")
+        self.expect_refused("run", "strip.yaml", "--out", "", says="must not be empty")
         self.expect_refused("run", "strip.yaml", "--formats", "vtp,glp", says=["glp", "glb"])
 
     def test_obstacles_where_they_cannot_be(self):

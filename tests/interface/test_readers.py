@@ -68,9 +68,9 @@ def vertices(path):
 
 
 class Vtk(ProgramTest):
-    def frames(self, folder):
+    def frames(self, folder, collection="ribbon.pvd"):
         """Time and surface of each frame that the collection names."""
-        for entry in ElementTree.parse(folder / "ribbon.pvd").getroot().iter("DataSet"):
+        for entry in ElementTree.parse(folder / collection).getroot().iter("DataSet"):
             reader = vtkXMLPolyDataReader()
             reader.SetFileName(str(folder / entry.get("file")))
             reader.Update()
@@ -96,6 +96,19 @@ class Vtk(ProgramTest):
                 for k, point in enumerate(final):
                     for a, b in zip(point, surface.GetPoint(k)):
                         self.assertAlmostEqual(a, b, delta=1e-6 * max(1, abs(a)))
+
+    def test_solids_stand_where_the_scene_has_them(self):
+        self.expect(0, "run", *KINDS["obstacles"][0], "--quiet", "--formats", "vtp", "--out", "still",
+                    "--set", "obstacles=[{shape: sphere, radius: 0.02, position: [0.1, 0.2, -0.3]}]")
+        (still,) = self.frames(self.folder / "still", "solids.pvd")
+        for bound, expected in zip(still[1].GetBounds(), (0.08, 0.12, 0.18, 0.22, -0.32, -0.28)):
+            self.assertAlmostEqual(bound, expected, delta=5e-4)
+        self.expect(0, "run", *KINDS["moving-obstacles"][0], "--quiet", "--formats", "vtp", "--out", "moving")
+        moving = list(self.frames(self.folder / "moving", "solids.pvd"))
+        self.assertEqual([time for time, _ in moving], [time for time, _ in self.frames(self.folder / "moving")])
+        self.assertNotEqual(moving[0][1].GetPoint(0), moving[-1][1].GetPoint(0))
+        self.expect(0, "run", "strip.yaml", "--quiet", "--formats", "vtp", "--out", "alone")
+        self.assertFalse((self.folder / "alone/solids.pvd").exists())
 
     def fields_are_those_of_the_nodes(self, surface, nodes):
         """Where a row of mesh points is a node's, it holds the node's values."""

@@ -91,6 +91,39 @@ TEST_F(RunFolderTest, KeepsTheOldRunWhenTheNewOneIsNotFinite) {
   EXPECT_EQ(entries(root), 1u);
 }
 
+TEST_F(RunFolderTest, SolidsAreACollectionOfTheirOwn) {
+  RunOutput run = sample_run();
+  Body body;
+  body.mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  body.mesh.normals.assign(3, Vec3::UnitZ());
+  body.mesh.triangles = {{0, 1, 2}};
+  body.poses.assign(3, {Vec3(0, 0, 1), Quat::Identity()});
+  run.bodies = {body, body};
+  const auto count = [](const std::string& text, const std::string& what) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+    return found;
+  };
+  write_format(root / "still.pvd", Format::vtp, run);
+  EXPECT_EQ(count(read_file(root / "still_solids.pvd"), "<DataSet"), 1u);
+  EXPECT_EQ(count(read_file(root / "still_solids" / "frame_0000.vtp"), "NumberOfPoints=\"6\""), 1u);
+  run.bodies[1].poses[2].position.x() = 0.5;
+  write_format(root / "moving.pvd", Format::vtp, run);
+  EXPECT_EQ(count(read_file(root / "moving_solids.pvd"), "<DataSet"), 3u);
+  EXPECT_EQ(count(read_file(root / "moving.pvd"), "solids"), 0u);
+}
+
+TEST_F(RunFolderTest, AnExportDoesNotReplaceThePartsOfARun) {
+  const fs::path run = root / "run";
+  write_run_folder(run, sample_run(), {});
+  for (const char* own : {"summary.json", "checkpoint", "centerline.csv", "history.csv"}) {
+    const std::string before = read_file(run / own);
+    EXPECT_THROW(write_format(run / own, Format::obj, sample_run()), InputError) << own;
+    EXPECT_EQ(read_file(run / own), before) << own;
+  }
+  write_format(root / "history.csv", Format::obj, sample_run());  // elsewhere it is a name as any other
+}
+
 TEST_F(RunFolderTest, ExportsOneFormatUnderAnyName) {
   const RunOutput run = sample_run();
   for (const char* file : {"a.glb", "b.pvd", "c.pc2", "d.obj", "sub/e.svg", "f.html"}) {

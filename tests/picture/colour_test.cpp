@@ -59,6 +59,8 @@ TEST(Field, ASpikeDoesNotSetTheRange) {
   frame.surface.fields[2].values[7] = 1e6;
   EXPECT_NEAR(range_of({&frame}, Colour::kappa), 0.5, 1e-12);
   EXPECT_EQ(range_of({&frame}, Colour::tau), 1) << "of a field that is zero";
+  for (double& kappa : frame.surface.fields[2].values) kappa = 3e-16;
+  EXPECT_EQ(range_of({&frame}, Colour::kappa), 1) << "of rounding";
 }
 
 TEST(Style, ReadsWhatIsRightAndRefusesTheRest) {

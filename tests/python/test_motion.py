@@ -146,6 +146,10 @@ class Changes(unittest.TestCase):
             motion.move(1, (0, 0, 0))
         with self.assertRaises(ValueError):
             motion.move(0, (0, 0, 0), over=0)
+        with self.assertRaisesRegex(ValueError, "position: must be three numbers"):
+            motion.move(0, (0, 0))
+        with self.assertRaisesRegex(ValueError, "gravity: must be three numbers"):
+            motion.gravity = "down"
 
     def test_hold_and_release(self):
         motion = wunderlich.Motion("swing", IMPLICIT)
@@ -161,6 +165,10 @@ class Changes(unittest.TestCase):
         motion.release(pin)
         for _ in range(10):
             motion.step()
+        with self.assertRaisesRegex(ValueError, "has let go"):
+            motion.move(pin, tip)
+        with self.assertRaisesRegex(TypeError, "integer"):
+            motion.hold("a")
         self.assertGreater(np.linalg.norm(motion.state.r[-1] - tip - [-0.1, 0, 0.1]), 1e-3)
         self.assertLess(motion.measure()["max_length_error"], 1e-12)
         with self.assertRaises(IndexError):

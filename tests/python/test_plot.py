@@ -36,6 +36,14 @@ class Plots(unittest.TestCase):
         self.assertIs(wunderlich.plot.energies(self.result.history, axes=same), same)
         np.testing.assert_array_equal(same.lines[-1].get_ydata(), self.result.history["total"])
 
+    def test_what_is_no_picture(self):
+        for wrong, draw in [("result.strip", wunderlich.plot.profile), ("result.history", wunderlich.plot.energies),
+                            ("result.surface", wunderlich.plot.surface)]:
+            with self.assertRaisesRegex(TypeError, f"{wrong}.*not a Result"):
+                draw(self.result)
+        with self.assertRaisesRegex(ValueError, "no 'zzz'; it has .*kappa"):
+            wunderlich.plot.surface(self.result.surface(), color_by="zzz")
+
     def test_film(self):
         film = wunderlich.plot.film(self.result, color_by="kappa")
         axes = film._fig.axes[0]

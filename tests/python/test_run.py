@@ -93,6 +93,21 @@ class Runs(unittest.TestCase):
         self.assertEqual((swing.outcome, swing.summary["method"]), ("converged", "equilibrium"))
         self.assertTrue(swing.summary["stability"]["stable"])
 
+    def test_what_an_equilibrium_knows_nothing_of_is_taken_away(self):
+        with self.assertRaisesRegex(wunderlich.InputError, "initial"):
+            wunderlich.equilibrium("belt-release-soft")
+        self.assertEqual(wunderlich.equilibrium("belt-release-soft", {"initial": None}).outcome, "converged")
+        with self.assertRaisesRegex(wunderlich.InputError, "is not in the scene"):
+            wunderlich.equilibrium("swing", {"initial": None})
+
+    def test_what_is_no_scene(self):
+        with self.assertRaisesRegex(TypeError, "not a NoneType"):
+            wunderlich.run(None)
+        with self.assertRaisesRegex(TypeError, "overrides.*not a list"):
+            wunderlich.run("swing", ["ribbon.segments=10"])
+        with self.assertRaisesRegex(IndexError, "strip out of range"):
+            wunderlich.run("swing", {"solver.duration": 0.01}).state(0, 1)
+
     def test_of_a_dict(self):
         content = {"ribbon": {"length": 1, "width": 0.1}, "clamps": [{"at": "start"}], "gravity": [0, 0, -5],
                    "solver": {"method": "equilibrium"}}

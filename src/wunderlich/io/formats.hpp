@@ -8,7 +8,7 @@
 namespace wunderlich::io {
 
 enum class Format {
-  vtp,   ///< `ribbon.pvd` and `frames/*.vtp`: ParaView
+  vtp,   ///< `ribbon.pvd` and `frames/*.vtp`, with obstacles `solids.pvd` and `solids/*.vtp`: ParaView
   glb,   ///< `ribbon.glb`: any 3D viewer; short clips in Blender
   pc2,   ///< `ribbon.pc2` and `ribbon_rest.obj`: long clips in Blender
   obj,   ///< `ribbon.obj`: the final surface, or a body where a thickness is asked for

@@ -43,9 +43,33 @@ void require_finite(const RunOutput& output) {
   }
 }
 
+bool at_rest(const std::vector<Body>& bodies) {
+  for (const Body& body : bodies) {
+    for (const Pose& pose : body.poses) {
+      if (pose.position != body.poses[0].position || pose.frame.coeffs() != body.poses[0].frame.coeffs()) return false;
+    }
+  }
+  return true;
+}
+
+/// A file a frame, one alone where nothing moves, and the collection.
+void render_bodies(const RunOutput& output, const std::string& stem, std::vector<RenderedFile>& files) {
+  const std::string solids = stem.empty() ? "solids" : stem + "_solids";
+  const std::size_t count = at_rest(output.bodies) ? 1 : output.frames.size();
+  std::vector<std::string> names;
+  std::vector<double> times;
+  for (std::size_t k = 0; k < count; ++k) {
+    names.push_back(fmt::format("{}/frame_{:04}.vtp", solids, k));
+    times.push_back(output.frames[k].time);
+    files.emplace_back(names.back(), vtp(output.bodies, k, times.back()));
+  }
+  files.emplace_back(solids + ".pvd", pvd(times, names));
+}
+
 std::vector<RenderedFile> render_vtp(const RunOutput& output, const std::string& stem) {
   const std::string frames = stem.empty() ? "frames" : stem + "_frames";
   std::vector<RenderedFile> files;
+  if (!output.bodies.empty()) render_bodies(output, stem, files);
   std::vector<std::string> names;
   std::vector<double> times;
   for (const Frame& frame : output.frames) {

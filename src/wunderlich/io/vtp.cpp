@@ -37,7 +37,7 @@ std::string packed(const std::vector<double>& values) {
 }
 
 std::string point_data(const Mesh& mesh, Blocks& blocks) {
-  std::string out = "<PointData Scalars=\"kappa\" Normals=\"normals\">\n";
+  std::string out = fmt::format("<PointData{} Normals=\"normals\">\n", mesh.fields.empty() ? "" : " Scalars=\"kappa\"");
   for (const PointField& field : mesh.fields) {
     assert(field.values.size() == mesh.points.size());
     out += blocks.add("Float32", field.name, 1, packed(field.values)) + "\n";
@@ -77,6 +77,18 @@ std::string vtp(const Mesh& mesh, double time) {
   out += polygons(mesh, blocks);
   out += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
   return out + blocks.bytes + "\n</AppendedData>\n</VTKFile>\n";
+}
+
+std::string vtp(const std::vector<Body>& bodies, std::size_t frame, double time) {
+  Mesh all;
+  for (const Body& body : bodies) {
+    const Pose& pose = body.poses[frame];
+    const int first = static_cast<int>(all.points.size());
+    for (const Vec3& point : body.mesh.points) all.points.push_back(pose.position + pose.frame * point);
+    for (const Vec3& normal : body.mesh.normals) all.normals.push_back(pose.frame * normal);
+    for (const auto& [a, b, c] : body.mesh.triangles) all.triangles.push_back({first + a, first + b, first + c});
+  }
+  return vtp(all, time);
 }
 
 std::string pvd(const std::vector<double>& times, const std::vector<std::string>& files) {
