@@ -25,7 +25,7 @@ MORE = {
     "twist-release-soft": {"set": ["solver.duration=0.3"]},
     "slide-cylinder": {"set": ["solver.duration=0.4"]},
     "swing": {"set": ["solver.duration=0.72"]},
-    "knot": {"set": ["solver.duration=4.2"], "view": "28.65,80"},
+    "knot": {"set": ["solver.duration=4.2"], "export": ["--view", "28.65,80", "--zoom", "5"]},
     "whip": {"set": ["solver.duration=0.6"]},
 }
 
@@ -112,8 +112,7 @@ def main() -> None:
                 command += ["--set", setting]
             subprocess.run(command, check=True)
             picture = images / f"{scene}.png"
-            view = ["--view", more["view"]] if "view" in more else []
-            subprocess.run([options.program, "export", str(out), "--to", "png", "--out", str(picture), *view], check=True,
+            subprocess.run([options.program, "export", str(out), "--to", "png", "--out", str(picture), *more.get("export", [])], check=True,
                            stdout=subprocess.DEVNULL)
             energy = json.loads((out / "summary.json").read_text())["energy"]["normalized"]
             print(f"{scene}: V l/(D w) = {energy:.6g}, {picture.stat().st_size // 1000} kB", flush=True)

@@ -34,6 +34,7 @@ struct ExportArguments {
   std::string out;                  ///< empty: in the run folder, under the name `run` would give it
   std::optional<double> thickness;  ///< of a body to print [m]
   std::string size, view, colour;   ///< of a picture; empty: as it is usual
+  std::optional<double> zoom;       ///< of a still or a film
   std::optional<double> fps;        ///< of a film
   std::optional<long> frame;        ///< of a still
 };

@@ -35,11 +35,17 @@ picture::Style style_of(const ExportArguments& arguments, io::Format format) {
   require_format(!arguments.colour.empty(), "--colour", format, {png, mp4});
   require_format(arguments.thickness.has_value(), "--thickness", format, {stl, mf3, obj});
   require_format(arguments.frame.has_value(), "--frame", format, {png});
+  require_format(arguments.zoom.has_value(), "--zoom", format, {png, mp4});
   require_format(arguments.fps.has_value(), "--fps", format, {mp4});
   picture::Style style;
   if (!arguments.size.empty()) picture::parse_size(arguments.size, style);
   if (!arguments.view.empty()) style.view = picture::parse_direction(arguments.view);
   if (!arguments.colour.empty()) style.colour = picture::parse_colour(arguments.colour);
+  style.zoom = arguments.zoom.value_or(style.zoom);
+  if (!(style.zoom >= 1 && style.zoom <= picture::largest_zoom)) {
+    throw InputError(
+        fmt::format("--zoom: {:g} is not allowed; must be from 1 to {:g}", style.zoom, picture::largest_zoom));
+  }
   style.fps = arguments.fps.value_or(style.fps);
   if (!(style.fps >= picture::smallest_fps && style.fps <= picture::largest_fps)) {
     throw InputError(fmt::format("--fps: {:g} is not allowed; must be from {:g} to {:g}", style.fps,

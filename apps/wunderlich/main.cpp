@@ -77,6 +77,8 @@ void add_export(CLI::App& program, ExportArguments& arguments, int& exit_code) {
       ->add_option("--colour", arguments.colour,
                    "Of the surface, for png and mp4: plain, kappa, tau, eta or energy; default plain")
       ->type_name("FIELD");
+  command->add_option("--zoom", arguments.zoom, "On the middle of the shape, for png and mp4; default 1, all of it")
+      ->type_name("FACTOR");
   command->add_option("--frame", arguments.frame, "The recorded frame that a png shows, from 0; default: the last")
       ->type_name("N");
   command->add_option("--fps", arguments.fps, "Recorded frames a second of an mp4; default 25")->type_name("RATE");

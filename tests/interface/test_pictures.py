@@ -54,10 +54,11 @@ class Stills(Drawn):
     def test_a_flat_strip_is_as_long_as_it_is_wide(self):
         # From above, at one distance from the eye: 0.82 of the picture's width, and a tenth of that high.
         self.finished("strip.yaml", "--set", "gravity=[0, 0, 0]")
-        rows = [(x, y) for y, row in enumerate(self.still("--view", "0,90")) for x, pixel in enumerate(row) if paint(*pixel)]
-        xs, ys = zip(*rows)
-        self.assertAlmostEqual(max(xs) - min(xs) + 1, 0.82 * 320, delta=2)
-        self.assertAlmostEqual(max(ys) - min(ys) + 1, 0.082 * 320, delta=2)
+        for zoom, wide, high in ((1, 0.82, 0.082), (2, 1, 0.164)):
+            picture = self.still("--view", "0,90", "--zoom", zoom)
+            xs, ys = zip(*((x, y) for y, row in enumerate(picture) for x, pixel in enumerate(row) if paint(*pixel)))
+            self.assertAlmostEqual(max(xs) - min(xs) + 1, wide * 320, delta=2)
+            self.assertAlmostEqual(max(ys) - min(ys) + 1, high * 320, delta=2)
 
     def test_colours_follow_the_curvature(self):
         for gravity, sign in (("[0, 0, -1]", -1), ("[0, 0, 1]", 1)):
@@ -92,6 +93,8 @@ class Stills(Drawn):
             ("from 16 to 8192", "run", "--to", "png", "--size", "100000x100000"),
             ("must be WIDTHxHEIGHT", "run", "--to", "png", "--size", "big"),
             ("must be AZIMUTH,ELEVATION", "run", "--to", "png", "--view", "up"),
+            ("--zoom: 0.5 is not allowed; must be from 1 to 100", "run", "--to", "png", "--zoom", "0.5"),
+            ("--zoom: is for png and mp4, not for glb", "run", "--to", "glb", "--zoom", "2"),
             ("plain, kappa, tau, eta, energy", "run", "--to", "png", "--colour", "pink"),
             ("the run has the frames 0 to", "run", "--to", "png", "--frame", "1000"),
             ("the run has the frames 0 to", "run", "--to", "png", "--frame=-1"),

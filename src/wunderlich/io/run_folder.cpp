@@ -88,7 +88,7 @@ std::vector<RenderedFile> render_patterns(const RunOutput& output, const std::st
     const std::string name = i == 0 ? stem + ".svg" : fmt::format("{}-{}.svg", stem, i + 1);
     const std::string which = output.patterns.size() > 1 ? fmt::format(", ribbon {}", i + 1) : "";
     const std::string rest = output.summary.converged ? "" : " (did not come to its end)";
-    files.emplace_back(name, pattern_svg(output.patterns[i], output.summary.scene + which + rest));
+    files.emplace_back(name, pattern_svg(output.patterns[i], fmt::format("{}{}{}", output.summary.scene, which, rest)));
   }
   return files;
 }

@@ -26,6 +26,7 @@ Plan plan(const Subject& subject, const Style& style, std::vector<std::size_t> f
   out.fits = fits_of(points);
   const View view = style.view ? view_from(*style.view) : best_view(shown.back()->surface);
   out.camera = frame_all(view, static_cast<double>(style.width) / style.height, points, out.fits);
+  out.camera.half_height /= style.zoom;
   if (style.colour != Colour::plain) out.range = range_of(shown, style.colour);
   return out;
 }

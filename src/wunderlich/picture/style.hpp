@@ -28,11 +28,13 @@ struct Style {
   Colour colour = Colour::plain;
   std::optional<Direction> view;     ///< none: from where most of the shape is seen
   std::optional<std::size_t> frame;  ///< of a still; none: the last
+  double zoom = 1;                   ///< on the middle of the shape; 1: all of it is seen
   double fps = 25;                   ///< of a film: recorded frames a second
 };
 
 inline constexpr int smallest_side = 16;   // pixels
 inline constexpr int largest_side = 8192;  // pixels
+inline constexpr double largest_zoom = 100;
 inline constexpr double smallest_fps = 0.1, largest_fps = 240;
 
 /// "1200x750", "30,20" in degrees, "kappa". Each throws InputError with what would be right.
