@@ -14,10 +14,9 @@ constexpr double kWidest = 0.95;  // of the width at which rulings meet
 
 /// The largest |w eta'/2|.
 double ruling_ratio(const geometry::RibbonSpec& spec, const geometry::State& state) {
-  const geometry::Ribbon ribbon = geometry::make_ribbon(spec);
   double most = 0;
-  for (std::size_t i = 0; i + 1 < state.eta.size(); ++i) {
-    most = std::max(most, std::abs(state.eta[i + 1] - state.eta[i]) * 0.5 * ribbon.width / ribbon.rest_length[i]);
+  for (const double x : geometry::strains(geometry::make_ribbon(spec), state).ruling_ratio) {
+    most = std::max(most, std::abs(x));
   }
   return most;
 }

@@ -1,6 +1,7 @@
 /// What an exporter sees: one recorded instant of a model, without any knowledge of the model.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -50,6 +51,13 @@ struct Body {
   Mesh mesh;                ///< in its own frame
   std::vector<Pose> poses;  ///< of its own frame, one for each frame of the run
 };
+
+/// Does it stand elsewhere in some frame than in the first?
+inline bool moves(const Body& body) {
+  return std::any_of(body.poses.begin(), body.poses.end(), [&](const Pose& pose) {
+    return pose.position != body.poses.front().position || pose.frame.coeffs() != body.poses.front().frame.coeffs();
+  });
+}
 
 /// The strip unrolled flat: x along the strip, y across it.
 struct FlatPattern {

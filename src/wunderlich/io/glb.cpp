@@ -172,12 +172,6 @@ Json material(const char* name, const std::array<double, 3>& colour, double roug
             {"roughnessFactor", roughness}}}};
 }
 
-bool moves(const Body& body) {
-  return std::any_of(body.poses.begin(), body.poses.end(), [&](const Pose& pose) {
-    return pose.position != body.poses.front().position || pose.frame.coeffs() != body.poses.front().frame.coeffs();
-  });
-}
-
 Json describe(Buffer& buffer, const std::vector<Frame>& frames, const std::vector<Body>& bodies,
               const std::string& name) {
   Json out;

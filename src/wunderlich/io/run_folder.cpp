@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
@@ -43,19 +44,11 @@ void require_finite(const RunOutput& output) {
   }
 }
 
-bool at_rest(const std::vector<Body>& bodies) {
-  for (const Body& body : bodies) {
-    for (const Pose& pose : body.poses) {
-      if (pose.position != body.poses[0].position || pose.frame.coeffs() != body.poses[0].frame.coeffs()) return false;
-    }
-  }
-  return true;
-}
-
 /// A file a frame, one alone where nothing moves, and the collection.
 void render_bodies(const RunOutput& output, const std::string& stem, std::vector<RenderedFile>& files) {
   const std::string solids = stem.empty() ? "solids" : stem + "_solids";
-  const std::size_t count = at_rest(output.bodies) ? 1 : output.frames.size();
+  const bool still = std::none_of(output.bodies.begin(), output.bodies.end(), moves);
+  const std::size_t count = still ? 1 : output.frames.size();
   std::vector<std::string> names;
   std::vector<double> times;
   for (std::size_t k = 0; k < count; ++k) {

@@ -28,6 +28,16 @@ bool is_index(const std::string& part) {
   return !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
 }
 
+/// The index of a part that is there, or the number of items.
+std::size_t find_item(const Value& holder, const std::string& part) {
+  const std::size_t count = holder.items.size();
+  if (holder.kind == Value::Kind::map) {
+    return static_cast<std::size_t>(std::find(holder.names.begin(), holder.names.end(), part) - holder.names.begin());
+  }
+  const auto index = is_index(part) ? parse_whole(part) : std::nullopt;
+  return index && *index < static_cast<long>(count) ? static_cast<std::size_t>(*index) : count;
+}
+
 Value& list_item(Value& list, const std::string& part, const Place& place, const std::string& path) {
   const auto index = parse_whole(part);
   const std::size_t size = list.items.size();
@@ -40,8 +50,8 @@ Value& list_item(Value& list, const std::string& part, const Place& place, const
 }
 
 Value& map_item(Value& map, const std::string& part, const Place& place) {
-  for (std::size_t i = 0; i < map.names.size(); ++i) {
-    if (map.names[i] != part) continue;
+  const std::size_t i = find_item(map, part);
+  if (i < map.items.size()) {
     map.name_places[i] = place;
     return map.items[i];
   }
@@ -58,16 +68,6 @@ void erase_item(Value& holder, std::size_t index) {
     holder.name_places.erase(holder.name_places.begin() + at);
   }
   holder.items.erase(holder.items.begin() + at);
-}
-
-/// The index of a part that is there, or the number of items.
-std::size_t find_item(const Value& holder, const std::string& part) {
-  const std::size_t count = holder.items.size();
-  if (holder.kind == Value::Kind::map) {
-    return static_cast<std::size_t>(std::find(holder.names.begin(), holder.names.end(), part) - holder.names.begin());
-  }
-  const auto index = is_index(part) ? parse_whole(part) : std::nullopt;
-  return index && *index < static_cast<long>(count) ? static_cast<std::size_t>(*index) : count;
 }
 
 /// Takes a key or a list's element away. Throws InputError where there is none.
